@@ -32,7 +32,9 @@ Json figures_json(const Section& section) {
 }  // namespace
 
 Json digest_json(const std::vector<Section>& sections, const Json& provenance) {
-  Json out{{"provenance", provenance}, {"sections", Json::array()}};
+  Json out{{"schema_version", kClaimsVersion},
+           {"provenance", provenance},
+           {"sections", Json::array()}};
   for (const Section& s : sections) {
     Json claims = Json::array(), tables = Json::array();
     for (const ClaimResult& c : s.claims) claims.push_back(to_json(c));

@@ -19,6 +19,8 @@ std::string_view css_of(Verdict verdict) {
       return "yes";
     case Verdict::not_reproduced:
       return "no";
+    case Verdict::stronger:
+    case Verdict::weaker:
     case Verdict::differs:
     case Verdict::depends:
     case Verdict::contradiction:
@@ -31,7 +33,7 @@ std::string_view css_of(Verdict verdict) {
   return "open";
 }
 
-std::string verdicts_html(const VerdictCounts& counts, Origin origin) {
+std::string verdicts_html(const VerdictCounts& counts) {
   std::string out;
   for (const Verdict v : kVerdicts) {
     const int count = counts[static_cast<std::size_t>(v)];
@@ -41,7 +43,7 @@ std::string verdicts_html(const VerdictCounts& counts, Origin origin) {
                        css_of(v),
                        mark_of(v),
                        count,
-                       words_of(v, origin));
+                       words_of(v));
   }
   return out;
 }

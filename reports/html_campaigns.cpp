@@ -17,9 +17,9 @@ std::string campaign_html(const CampaignPages& campaign) {
       summary_html(campaign.provenance),
       titles);
   const std::string papers =
-      verdicts_html(tally(campaign.sections, Origin::paper), Origin::paper);
+      verdicts_html(tally(campaign.sections, Origin::paper));
   const std::string ranges =
-      verdicts_html(tally(campaign.sections, Origin::suite), Origin::suite);
+      verdicts_html(tally(campaign.sections, Origin::suite));
   if (!papers.empty()) out += "<p>The papers: " + papers + "</p>\n";
   if (!ranges.empty())
     out += "<p class=\"remark\">Regression checks: " + ranges + "</p>\n";

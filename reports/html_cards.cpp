@@ -22,21 +22,21 @@ std::string answer_html(const Section& section) {
                            html(c.says),
                            css_of(c.verdict),
                            mark_of(c.verdict),
-                           words_of(c.verdict, c.origin));
+                           words_of(c.verdict));
   return "";
 }
 
 }  // namespace
 
-std::string counts_html(const VerdictCounts& counts, Origin origin) {
-  std::string out = verdicts_html(counts, origin);
+std::string counts_html(const VerdictCounts& counts) {
+  std::string out = verdicts_html(counts);
   const int open = counts[static_cast<std::size_t>(Verdict::not_judged)];
   if (open > 0)
     out += fmt::format("{}<span class=\"open\">{} {} {}</span>",
                        out.empty() ? "" : ", ",
                        mark_of(Verdict::not_judged),
                        open,
-                       words_of(Verdict::not_judged, origin));
+                       words_of(Verdict::not_judged));
   return out;
 }
 
@@ -58,8 +58,7 @@ std::string card_html(const Section& section,
         kCardHeight);
   if (const std::string answer = answer_html(section); !answer.empty())
     out += "<p class=\"answer\">" + answer + "</p>\n";
-  if (const std::string counts =
-          counts_html(tally(section, Origin::paper), Origin::paper);
+  if (const std::string counts = counts_html(tally(section, Origin::paper));
       !counts.empty())
     out += "<p class=\"counts\">" + counts + "</p>\n";
   return out + "</article>\n";

@@ -42,7 +42,7 @@ std::string numbers_html(const std::vector<const Section*>& sections) {
           html(s.paper),
           css_of(s.verdict),
           mark_of(s.verdict),
-          words_of(s.verdict, s.origin));
+          words_of(s.verdict));
     }
   if (rows.empty()) return "";
   return "<div class=\"scroll\">\n<table class=\"numbers\">\n<thead>\n<tr>"
@@ -94,7 +94,7 @@ std::string sentence_html(const ClaimResult& c, const std::string& page) {
       cause.empty() ? "" : ". <span class=\"cause\">" + html(cause) + "</span>",
       css_of(c.verdict),
       mark_of(c.verdict),
-      words_of(c.verdict, c.origin));
+      words_of(c.verdict));
 }
 
 /// Statements that do not hold as printed, with what was measured and why:
@@ -106,6 +106,8 @@ std::string failing_html(const Section& section) {
   for (const Verdict verdict : {Verdict::not_reproduced,
                                 Verdict::contradiction,
                                 Verdict::depends,
+                                Verdict::weaker,
+                                Verdict::stronger,
                                 Verdict::differs,
                                 Verdict::partly_judged})
     for (std::size_t k = 0; k < section.claims.size(); ++k)
@@ -130,7 +132,7 @@ std::string open_html(const std::vector<const Section*>& sections) {
   if (count == 0) return "";
   return fmt::format("<p class=\"remark\">{} {}; decided by profile {}</p>\n",
                      count,
-                     words_of(Verdict::not_judged, Origin::paper),
+                     words_of(Verdict::not_judged),
                      html(fmt::format("{}", fmt::join(profiles, ", "))));
 }
 

@@ -87,7 +87,7 @@ std::string contents_html(const std::vector<Part>& parts,
 std::string tallies_html(const std::vector<Section>& sections) {
   std::string out;
   const auto add = [&](const char* format, Origin origin) {
-    const auto counts = counts_html(tally(sections, origin), origin);
+    const auto counts = counts_html(tally(sections, origin));
     if (!counts.empty()) out += fmt::format(fmt::runtime(format), counts);
   };
   add("<p>Statements of the papers: {}.</p>\n", Origin::paper);

@@ -11,8 +11,8 @@ std::string link(const std::string& id, const std::string& words) {
   return fmt::format("<a href=\"#{}\">{}</a>", id, html(words));
 }
 
-/// The paper's claims are what counts as reproduced; the suite's ranges are a
-/// line below.
+/// The paper's claims are what counts as reproduced; regression checks
+/// are a line below.
 std::string totals_html(const std::vector<Section>& sections) {
   int unmet = 0;
   for (const Section& s : sections)
@@ -27,13 +27,13 @@ std::string totals_html(const std::vector<Section>& sections) {
     out += fmt::format("<li class=\"{}\"><strong>{}</strong> {}</li>\n",
                        count == 0 ? "open" : css_of(v),
                        count,
-                       words_of(v, Origin::paper));
+                       words_of(v));
   }
   return out +
          fmt::format(
              "</ul>\n<p>Regression checks (ranges from earlier runs): "
              "{}. {}</p>\n",
-             tally_text(tally(sections, Origin::suite), Origin::suite),
+             tally_text(tally(sections, Origin::suite)),
              unmet == 0
                  ? "All gating claims (marked •) that were judged are met."
                  : fmt::format("Gating claims (marked •) that are not "
@@ -53,7 +53,7 @@ std::string chips_html(const Section& section,
         out.empty() ? "" : " ",
         css_of(c.verdict),
         anchors.claims[k],
-        words_of(c.verdict, origin),
+        words_of(c.verdict),
         html(c.says),
         mark_of(c.verdict),
         html(c.id),
@@ -72,11 +72,11 @@ std::string overview_html(const std::vector<Section>& sections,
                     "<thead>\n<tr><th scope=\"col\">experiment</th>";
   const auto columns = columns_of(tally(sections, Origin::paper));
   for (const Verdict v : columns) {
-    out += fmt::format("<th scope=\"col\">{}</th>", words_of(v, Origin::paper));
+    out += fmt::format("<th scope=\"col\">{}</th>", words_of(v));
   }
   out +=
       "<th scope=\"col\">the paper's claims</th>"
-      "<th scope=\"col\">the suite's ranges</th></tr>\n</thead>\n<tbody>\n";
+      "<th scope=\"col\">regression checks</th></tr>\n</thead>\n<tbody>\n";
   for (std::size_t s = 0; s < sections.size(); ++s) {
     out += fmt::format("<tr><th scope=\"row\">{}</th>",
                        link(anchors[s].section, sections[s].title));
@@ -84,7 +84,7 @@ std::string overview_html(const std::vector<Section>& sections,
     for (const Verdict v : columns) {
       out += fmt::format("<td>{}<span class=\"word\"> {}</span></td>",
                          counts[static_cast<std::size_t>(v)],
-                         words_of(v, Origin::paper));
+                         words_of(v));
     }
     for (const Origin origin : {Origin::paper, Origin::suite})
       out += fmt::format("<td class=\"chips\">{}</td>",

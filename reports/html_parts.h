@@ -40,10 +40,10 @@ std::string name_of(std::string_view where, std::string_view title);
 std::string_view css_of(Verdict verdict);
 
 /// "✓ 3 reproduced, ✗ 1 not reproduced"; nothing where nothing is decided.
-std::string verdicts_html(const VerdictCounts& counts, Origin origin);
+std::string verdicts_html(const VerdictCounts& counts);
 
 /// The same with those that are not judged.
-std::string counts_html(const VerdictCounts& counts, Origin origin);
+std::string counts_html(const VerdictCounts& counts);
 
 /// What stands on a page; all of it is HTML.
 struct PageParts {

@@ -62,7 +62,7 @@ std::string claim_html(const ClaimResult& claim,
       html(claim.id),
       css_of(claim.verdict),
       mark_of(claim.verdict),
-      words_of(claim.verdict, claim.origin),
+      words_of(claim.verdict),
       html(claim.says));
   if (!claim.evidence.empty()) {
     out += fmt::format("<p class=\"evidence\">{}</p>", html(claim.evidence));
@@ -118,7 +118,7 @@ std::string claims_html(const Section& section,
   if (!open.empty())
     out += fmt::format("<details>\n<summary>{} {}</summary>\n{}</details>\n",
                        count,
-                       words_of(Verdict::not_judged, origin),
+                       words_of(Verdict::not_judged),
                        claims_table_html(title, section, open));
   return out;
 }
@@ -171,8 +171,7 @@ std::string head_html(const Section& section,
       html(section.experiment));
   if (!section.standing.empty())
     out += "<p class=\"answer\">" + html(section.standing) + ".</p>\n";
-  const std::string papers =
-      counts_html(tally(section, Origin::paper), Origin::paper);
+  const std::string papers = counts_html(tally(section, Origin::paper));
   if (!papers.empty())
     out += "<p class=\"counts\">The paper's statements: " + papers + "</p>\n";
   return out + about;

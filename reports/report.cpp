@@ -124,13 +124,13 @@ Tally tally(const std::vector<Section>& sections, Origin origin) {
   return all;
 }
 
-std::string tally_text(const Tally& tally, Origin origin) {
+std::string tally_text(const Tally& tally) {
   std::string text;
   for (const Verdict v : columns_of(tally))
     text += fmt::format("{}{} {}",
                         text.empty() ? "" : ", ",
                         tally[static_cast<std::size_t>(v)],
-                        words_of(v, origin));
+                        words_of(v));
   return text;
 }
 
@@ -140,7 +140,9 @@ std::vector<fs::path> write_report(const fs::path& dir,
                                    const Pages& pages) {
   Writer writer(dir);
   const Palette palette(sections);
-  Json claims{{"provenance", provenance}, {"sections", Json::array()}};
+  Json claims{{"schema_version", kClaimsVersion},
+              {"provenance", provenance},
+              {"sections", Json::array()}};
   for (std::size_t k = 0; k < sections.size(); ++k) {
     const Section& s = sections[k];
     write_section(writer, s, palette);

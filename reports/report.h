@@ -17,12 +17,15 @@
 
 namespace physinv {
 
-/// How many claims of an origin came to which verdict.
+/// Of claims.json and digest.json; 2: verdicts in the words of verdicts.md.
+inline constexpr int kClaimsVersion = 2;
+
+/// How many claims of an origin have which verdict.
 using Tally = VerdictCounts;
 Tally tally(const Section& section, Origin origin);
 Tally tally(const std::vector<Section>& sections, Origin origin);
 /// "12 reproduced, 3 not reproduced, 4 not judged, 1 reported"
-std::string tally_text(const Tally& tally, Origin origin);
+std::string tally_text(const Tally& tally);
 
 nlohmann::ordered_json to_json(const Figure& figure);
 nlohmann::ordered_json to_json(const ClaimResult& claim);

@@ -126,7 +126,7 @@ nlohmann::ordered_json to_json(const ClaimResult& claim) {
           {"says", claim.says},
           {"from", claim.from},
           {"gates", claim.gates},
-          {"verdict", words_of(claim.verdict, claim.origin)},
+          {"verdict", words_of(claim.verdict)},
           {"evidence", claim.evidence},
           {"origin", claim.origin == Origin::paper ? "paper" : "suite"},
           {"where", claim.where},

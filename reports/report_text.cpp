@@ -12,12 +12,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string summary(const std::vector<Section>& sections) {
-  std::string text =
-      fmt::format("claims of the papers {}",
-                  tally_text(tally(sections, Origin::paper), Origin::paper));
-  return text +
-         fmt::format("; of the suite's ranges {}",
-                     tally_text(tally(sections, Origin::suite), Origin::suite));
+  std::string text = fmt::format("claims of the papers {}",
+                                 tally_text(tally(sections, Origin::paper)));
+  return text + fmt::format("; regression checks {}",
+                            tally_text(tally(sections, Origin::suite)));
 }
 
 std::string claims_markdown(const Section& section, Origin origin) {
@@ -43,7 +41,7 @@ std::string claims_markdown(const Section& section, Origin origin) {
                        markdown(c.says),
                        place,
                        mark_of(c.verdict),
-                       words_of(c.verdict, origin),
+                       words_of(c.verdict),
                        markdown(c.from),
                        c.gates ? "yes" : "no",
                        markdown(c.evidence),
@@ -117,7 +115,7 @@ std::string render_claims_text(const std::vector<Section>& sections,
       if (!cause.empty()) words += fmt::format(" {{{}}}", cause);
       if (!c.note.empty()) words += fmt::format(" [{}]", c.note);
       std::string head = "  " + pad_right(c.id, 4) + ' ';
-      head += words_of(c.verdict, c.origin);
+      head += words_of(c.verdict);
       head = pad_right(head, kIndent);
       const std::size_t room = width > kIndent + 20 ? width - kIndent : 20;
       for (const std::string& line : wrap(words, room)) {

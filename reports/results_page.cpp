@@ -22,6 +22,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::array kOrder{Verdict::not_reproduced,
                             Verdict::contradiction,
                             Verdict::depends,
+                            Verdict::weaker,
+                            Verdict::stronger,
                             Verdict::differs,
                             Verdict::partly_judged,
                             Verdict::not_judged};
@@ -104,7 +106,7 @@ std::string row(const ClaimKey& key,
                      markdown(key.second),
                      markdown(claim.says),
                      measured(claim),
-                     words_of(claim.verdict, claim.origin),
+                     words_of(claim.verdict),
                      markdown(claim.cause.empty() ? "unknown" : claim.cause));
 }
 
@@ -142,7 +144,7 @@ std::string answer(const Publication& paper,
         fmt::format(" {}: **{} {}**, {}, {}.",
                     markdown(claim.says),
                     mark_of(claim.verdict),
-                    words_of(claim.verdict, claim.origin),
+                    words_of(claim.verdict),
                     measured(claim),
                     page_link(experiment, experiment + ' ' + id, links.pages));
   }
@@ -239,7 +241,7 @@ std::string studies_line(const Papers& papers, const ResultsLinks& links) {
                            page_link(key.first,
                                      key.first.substr(key.first.find('/') + 1),
                                      links.pages),
-                           words_of(s.claim.verdict, s.claim.origin));
+                           words_of(s.claim.verdict));
   if (out.empty()) return "";
   return "- Studies vary settings that the papers do not print: " + out + "\n";
 }
@@ -277,14 +279,16 @@ std::string results_markdown(const std::vector<NamedDigest>& campaigns,
                links.pages,
                kChecksPage) +
            answers(papers, publications, links) + '\n' +
-           counts_table(papers,
-                        Origin::paper,
-                        {{"reproduced", {Verdict::reproduced}},
-                         {"differs", {Verdict::differs}},
-                         {"depends or contradiction",
-                          {Verdict::depends, Verdict::contradiction}},
-                         {"not reproduced", {Verdict::not_reproduced}},
-                         kUndecided}) +
+           counts_table(
+               papers,
+               Origin::paper,
+               {{"reproduced", {Verdict::reproduced}},
+                {"differs",
+                 {Verdict::stronger, Verdict::weaker, Verdict::differs}},
+                {"depends or contradiction",
+                 {Verdict::depends, Verdict::contradiction}},
+                {"not reproduced", {Verdict::not_reproduced}},
+                kUndecided}) +
            section("Statements that are not reproduced or undecided, and why",
                    table_of(papers, Origin::paper, links.pages)) +
            section("Pages of experiments, with reproduced of all statements",
@@ -304,14 +308,17 @@ std::string checks_markdown(const std::vector<NamedDigest>& campaigns,
                "experiments list all of them.\n\n",
                kWrittenByResults,
                links.overview) +
-           counts_table(
-               papers,
-               Origin::suite,
-               {{"hold", {Verdict::reproduced}},
-                {"differ or depend",
-                 {Verdict::differs, Verdict::depends, Verdict::contradiction}},
-                {"fail", {Verdict::not_reproduced}},
-                kUndecided}) +
+           counts_table(papers,
+                        Origin::suite,
+                        {{"reproduced", {Verdict::reproduced}},
+                         {"differs, depends or contradiction",
+                          {Verdict::stronger,
+                           Verdict::weaker,
+                           Verdict::differs,
+                           Verdict::depends,
+                           Verdict::contradiction}},
+                         {"not reproduced", {Verdict::not_reproduced}},
+                         kUndecided}) +
            table_of(papers, Origin::suite, "");
   });
 }

@@ -52,9 +52,8 @@ std::string in_two_lines(const Statement& s, std::size_t room) {
       "{} {}\n  {}\n",
       mark_of(s.verdict),
       shortened(s.what, room - 2),
-      shortened(
-          fmt::format("{}{}: {}", here, s.paper, words_of(s.verdict, s.origin)),
-          room - 2));
+      shortened(fmt::format("{}{}: {}", here, s.paper, words_of(s.verdict)),
+                room - 2));
 }
 
 std::string more_text(std::size_t more) {
@@ -83,32 +82,42 @@ std::string in_full(const Section& section, std::size_t room) {
                s.what,
                s.here,
                shortened(s.paper, room / kConditionShare),
-               std::string(words_of(s.verdict, s.origin))});
+               std::string(words_of(s.verdict))});
   return shortened(text.substr(0, text.size() - 1), room) + '\n' +
          table.text(room) + more_text(more);
 }
 
-/// A line for each: how many claims came to which verdict.
+/// "11 of 12 reproduced", of those that are judged; "–" if none is.
+std::string checks_text(const VerdictCounts& counts) {
+  int judged = 0;
+  for (const Verdict v : kVerdicts)
+    if (v != Verdict::not_judged && v != Verdict::reported)
+      judged += counts[static_cast<std::size_t>(v)];
+  if (judged == 0) return "–";
+  return fmt::format("{} of {} reproduced",
+                     counts[static_cast<std::size_t>(Verdict::reproduced)],
+                     judged);
+}
+
+/// A line for each: how many statements of the papers have which verdict, and
+/// how many regression checks are reproduced.
 std::string in_brief(const std::vector<const Section*>& sections,
                      std::size_t room) {
+  VerdictCounts all{};
+  for (const Section* s : sections) {
+    const Tally counts = tally(*s, Origin::paper);
+    for (std::size_t k = 0; k < all.size(); ++k) all[k] += counts[k];
+  }
   std::vector<std::string> heads = {"<experiment"};
-  for (const Origin origin : {Origin::paper, Origin::suite})
-    for (const Verdict v : kVerdicts)
-      if (v != Verdict::not_judged && v != Verdict::reported)
-        heads.emplace_back(words_of(v, origin));
-  heads.emplace_back(words_of(Verdict::not_judged, Origin::paper));
+  for (const Verdict v : columns_of(all)) heads.emplace_back(words_of(v));
+  heads.emplace_back("regression checks");
   Columns table(heads);
   for (const Section* s : sections) {
     std::vector<std::string> row = {s->experiment};
-    int open = 0;
-    for (const Origin origin : {Origin::paper, Origin::suite}) {
-      const Tally counts = tally(*s, origin);
-      for (const Verdict v : kVerdicts)
-        if (v != Verdict::not_judged && v != Verdict::reported)
-          row.push_back(std::to_string(counts[static_cast<std::size_t>(v)]));
-      open += counts[static_cast<std::size_t>(Verdict::not_judged)];
-    }
-    row.push_back(std::to_string(open));
+    const Tally counts = tally(*s, Origin::paper);
+    for (const Verdict v : columns_of(all))
+      row.push_back(std::to_string(counts[static_cast<std::size_t>(v)]));
+    row.push_back(checks_text(tally(*s, Origin::suite)));
     table.add(std::move(row));
   }
   return table.text(room);

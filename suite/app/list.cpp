@@ -136,9 +136,8 @@ void print_claims(const std::string& of, const std::vector<Claim>& claims) {
                escaped(conditions_text(c)),
                c.cause.why.empty()
                    ? ""
-                   : fmt::format("{}: {}",
-                                 words_of(c.cause.as, c.origin()),
-                                 escaped(c.cause.why)));
+                   : fmt::format(
+                         "{}: {}", words_of(c.cause.as), escaped(c.cause.why)));
   }
 }
 
@@ -150,11 +149,11 @@ nlohmann::ordered_json claims_json(const std::string& of,
     for (const Condition& condition : c.conditions)
       conditions.push_back(
           {{"label", condition.text()}, {"bounds", condition.bounds}});
-    const auto cause = c.cause.why.empty()
-                           ? nlohmann::ordered_json(nullptr)
-                           : nlohmann::ordered_json{
-                                 {"verdict", words_of(c.cause.as, c.origin())},
-                                 {"why", c.cause.why}};
+    const auto cause =
+        c.cause.why.empty()
+            ? nlohmann::ordered_json(nullptr)
+            : nlohmann::ordered_json{{"verdict", words_of(c.cause.as)},
+                                     {"why", c.cause.why}};
     all.push_back({{"of", of},
                    {"id", c.id},
                    {"origin", c.origin() == Origin::paper ? "paper" : "suite"},

@@ -41,8 +41,8 @@ void check_claims(const ClaimTally& j) {
   const auto failing =
       j.known_misses.size() + j.misses.size() + j.explained.size();
   fmt::print(
-      "{} gating claims judged: {} hold, {} explained by their cause, {} fail "
-      "as expected, {} fail\n",
+      "{} gating claims judged: {} reproduced, {} explained by their cause, {} "
+      "not reproduced as expected, {} not reproduced\n",
       j.judged,
       j.judged - failing,
       j.explained.size(),
@@ -50,11 +50,11 @@ void check_claims(const ClaimTally& j) {
       j.misses.size());
   for (const auto& claim : j.explained) fmt::print("explained: {}\n", claim);
   for (const auto& claim : j.known_misses)
-    fmt::print("expected to fail: {}\n", claim);
+    fmt::print("not reproduced, as expected: {}\n", claim);
   for (const auto& claim : j.surprises)
-    fmt::print("holds, although expected to fail: {}\n", claim);
+    fmt::print("reproduced, although not expected: {}\n", claim);
   for (const auto& claim : j.stale)
-    fmt::print("holds, although its cause says: {}\n", claim);
+    fmt::print("reproduced, although its cause says: {}\n", claim);
   if (!j.misses.empty())
     throw ExitError(ExitCode::claim,
                     fmt::format("{} gating claims are not reproduced, first {}",

@@ -214,8 +214,8 @@ std::size_t show_changes(const std::vector<Again>& all,
   Columns table({"<claim", "<published", "<here", "<says"});
   for (const NewVerdict& c : changed)
     table.add({text_of({c.key}),
-               std::string(words_of(c.then, c.origin)),
-               std::string(words_of(c.now, c.origin)),
+               std::string(words_of(c.then)),
+               std::string(words_of(c.now)),
                c.says});
   if (!changed.empty()) fmt::print("{}", table.text(Screen::of(stdout).room()));
   fmt::print("{} of {} claims have the published verdict\n",

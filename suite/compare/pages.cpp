@@ -285,7 +285,7 @@ Section overview(const Comparison& c,
 }
 
 std::string verdict_word(const ClaimResult& claim) {
-  return std::string(words_of(claim.verdict, claim.origin));
+  return std::string(words_of(claim.verdict));
 }
 
 }  // namespace

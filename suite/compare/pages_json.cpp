@@ -118,9 +118,9 @@ Json to_json(const Comparison& c,
     Json verdicts = Json::array();
     Json directions = Json::array();
     for (std::size_t s = 0; s < claim.sides.size(); ++s) {
-      verdicts.push_back(claim.sides[s] ? Json(words_of(claim.sides[s]->verdict,
-                                                        claim.sides[s]->origin))
-                                        : Json(nullptr));
+      verdicts.push_back(claim.sides[s]
+                             ? Json(words_of(claim.sides[s]->verdict))
+                             : Json(nullptr));
       if (s > 0)
         directions.push_back(
             to_string(direction(claim.verdict(0), claim.verdict(s))));

@@ -37,10 +37,13 @@ struct Cause {
   std::vector<CauseNumber> numbers = {};  ///< in the braces of `why`
 };
 
-/// Stronger or weaker than printed, the same direction, which `shown_by` tells;
-/// `why` has both numbers.
-inline Cause differs(std::string why, std::vector<Condition> shown_by) {
-  return {Verdict::differs, std::move(why), std::move(shown_by)};
+/// Stronger or weaker than printed, in the same direction, which `shown_by`
+/// checks; `why` has both numbers.
+inline Cause stronger(std::string why, std::vector<Condition> shown_by) {
+  return {Verdict::stronger, std::move(why), std::move(shown_by)};
+}
+inline Cause weaker(std::string why, std::vector<Condition> shown_by) {
+  return {Verdict::weaker, std::move(why), std::move(shown_by)};
 }
 /// Reproduced for some settings of a choice that the paper does not print, and
 /// not for others; `why` names both.

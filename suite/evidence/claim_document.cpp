@@ -19,7 +19,8 @@ struct CauseWord {
 };
 constexpr std::array kCauses{
     CauseWord{"Fails: ", Verdict::not_reproduced},
-    CauseWord{"Differs: ", Verdict::differs},
+    CauseWord{"Stronger: ", Verdict::stronger},
+    CauseWord{"Weaker: ", Verdict::weaker},
     CauseWord{"Depends: ", Verdict::depends},
     CauseWord{"Contradiction: ", Verdict::contradiction},
     CauseWord{"Not run: ", Verdict::not_judged},
@@ -219,8 +220,8 @@ class Reader {
     if (!to.empty())
       fail(paragraph.place(0),
            "a claim has one sentence, and what follows begins with Note:, "
-           "Fails:, Differs:, Depends:, Contradiction:, Not run: or "
-           "Reported:");
+           "Fails:, Stronger:, Weaker:, Depends:, Contradiction:, Not run: "
+           "or Reported:");
     to = text;
   }
 

@@ -17,7 +17,7 @@
 ///
 ///   Note: How it is read.
 ///
-///   Differs: The same direction, with both numbers.
+///   Weaker: The same direction, with both numbers.
 ///
 ///   - share left: `lowest("adam", share_left(mean)) > 0.05`
 ///
@@ -31,9 +31,9 @@
 ///
 /// Relations: > >= < <=, `in a .. b`, `= a`, `= a +- b`, `near a`, `about a`,
 /// `as printed("name", seeds)`, `as stated(a, seeds)`, each perhaps followed by
-/// `of stages`; condition.h says what they are. Causes: Fails, Differs,
-/// Depends, Contradiction, Not run, Reported (claim.h); numbers in their text
-/// stand in braces (cause_numbers.h).
+/// `of stages`; condition.h says what they are. Causes: Fails, Stronger,
+/// Weaker, Depends, Contradiction, Not run, Reported (claim.h); numbers in
+/// their text stand in braces (cause_numbers.h).
 #pragma once
 
 #include <stdexcept>

@@ -63,8 +63,8 @@ void sort_in(const ClaimResult& c,
              ClaimTally& tally) {
   const bool holds = c.verdict == Verdict::reproduced;
   if (is_explained(c.verdict))
-    tally.explained.push_back(fmt::format(
-        "{}: {}: {}", name, words_of(c.verdict, c.origin), c.cause));
+    tally.explained.push_back(
+        fmt::format("{}: {}: {}", name, words_of(c.verdict), c.cause));
   else if (!holds && states_why(c))
     tally.known_misses.push_back(name + ": " + c.cause);
   else if (!holds)

@@ -137,7 +137,9 @@ enum class Origin { paper, suite };
 /// more than that: `differs`, `depends` and `contradiction` are explained.
 enum class Verdict {
   reproduced,
-  differs,        ///< stronger or weaker than printed, the same direction
+  stronger,       ///< than printed, in the same direction
+  weaker,         ///< than printed, in the same direction
+  differs,        ///< one of both; older files do not say which
   depends,        ///< on a choice that the paper does not print
   contradiction,  ///< tables, formulas or sentences of the paper disagree
   not_reproduced,
@@ -145,7 +147,7 @@ enum class Verdict {
   not_judged,     ///< runs are missing or too short
   reported        ///< numbers that no condition decides
 };
-inline constexpr int kVerdictCount = 8;
+inline constexpr int kVerdictCount = 10;
 
 /// One condition of a claim and what was measured for it.
 struct ConditionResult {

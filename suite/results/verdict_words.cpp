@@ -8,19 +8,21 @@ namespace physinv {
 namespace {
 
 struct Words {
-  std::string_view paper, suite, mark;
+  std::string_view word, mark;
   bool always = false;  ///< a column of its own, even if there are none
 };
 
 constexpr std::array<Words, kVerdictCount> kWords{{
-    {"reproduced", "holds", "✓", true},
-    {"differs", "differs", "≈"},
-    {"depends", "depends", "?"},
-    {"contradiction", "contradiction", "≠"},
-    {"not reproduced", "fails", "✗", true},
-    {"partly judged", "partly judged", "◐"},
-    {"not judged", "not judged", "–", true},
-    {"reported", "reported", "·", true},
+    {"reproduced", "✓", true},
+    {"differs (stronger)", "↑"},
+    {"differs (weaker)", "↓"},
+    {"differs", "≈"},
+    {"depends", "?"},
+    {"contradiction", "≠"},
+    {"not reproduced", "✗", true},
+    {"partly judged", "◐"},
+    {"not judged", "–", true},
+    {"reported", "·", true},
 }};
 
 const Words& all_of(Verdict verdict) {
@@ -37,21 +39,21 @@ std::vector<Verdict> columns_of(const VerdictCounts& counts) {
   return columns;
 }
 
-std::string_view words_of(Verdict verdict, Origin origin) {
-  const Words& words = all_of(verdict);
-  return origin == Origin::paper ? words.paper : words.suite;
-}
+std::string_view words_of(Verdict verdict) { return all_of(verdict).word; }
 
 std::string_view mark_of(Verdict verdict) { return all_of(verdict).mark; }
 
 std::optional<Verdict> verdict_of(std::string_view words) {
+  if (words == "holds") return Verdict::reproduced;
+  if (words == "fails") return Verdict::not_reproduced;
   for (const Verdict v : kVerdicts)
-    if (words == all_of(v).paper || words == all_of(v).suite) return v;
+    if (words == all_of(v).word) return v;
   return {};
 }
 
 bool is_explained(Verdict verdict) {
-  return verdict == Verdict::differs || verdict == Verdict::depends ||
+  return verdict == Verdict::stronger || verdict == Verdict::weaker ||
+         verdict == Verdict::differs || verdict == Verdict::depends ||
          verdict == Verdict::contradiction;
 }
 
@@ -59,7 +61,7 @@ std::string cause_text(Verdict verdict, std::string_view cause) {
   if (cause.empty()) return "";
   const bool stale = verdict == Verdict::reproduced;
   return fmt::format(
-      "{}: {}", stale ? "It holds; its cause is stale" : "Cause", cause);
+      "{}: {}", stale ? "Reproduced; its cause is stale" : "Cause", cause);
 }
 
 }  // namespace physinv

@@ -14,6 +14,8 @@ namespace physinv {
 
 /// In the order in which they are counted.
 inline constexpr std::array kVerdicts{Verdict::reproduced,
+                                      Verdict::stronger,
+                                      Verdict::weaker,
                                       Verdict::differs,
                                       Verdict::depends,
                                       Verdict::contradiction,
@@ -29,15 +31,17 @@ using VerdictCounts = std::array<int, kVerdictCount>;
 /// (reproduced, not reproduced, not judged, reported) and what occurs.
 std::vector<Verdict> columns_of(const VerdictCounts& counts);
 
-/// Of the paper's claims `reproduced`, `not reproduced`, of the suite's ranges
-/// `holds`, `fails`; of both `differs`, `depends`, `contradiction`, `partly
-/// judged`, `not judged`, `reported`.
-std::string_view words_of(Verdict verdict, Origin origin);
+/// `reproduced`, `differs (stronger)`, `differs (weaker)`, `differs`,
+/// `depends`, `contradiction`, `not reproduced`, `partly judged`, `not judged`,
+/// `reported`: docs/verdicts.md defines them, of papers' statements and
+/// regression checks.
+std::string_view words_of(Verdict verdict);
 
-/// One character each: ✓ ≈ ? ≠ ✗ ◐ – ·
+/// One character each: ✓ ↑ ↓ ≈ ? ≠ ✗ ◐ – ·
 std::string_view mark_of(Verdict verdict);
 
-/// What the words of either origin say; nothing if they are no verdict.
+/// What the words say, also `holds` and `fails`, which earlier versions wrote
+/// for regression checks; nothing if they are no verdict.
 std::optional<Verdict> verdict_of(std::string_view words);
 
 /// A condition fails, and the cause tells what that is.

@@ -202,7 +202,7 @@ def wrong_verdicts():
             yield f"README.md lacks the verdicts of RESULTS.md: {row}"
 
 
-FAILING = "not reproduced|fails|differs|depends|contradiction"
+FAILING = r"not reproduced|differs \((?:stronger|weaker)\)|depends|contradiction"
 OPEN = FAILING + "|partly judged|not judged|reported"
 
 
@@ -222,7 +222,7 @@ def page_rows():
             continue
         experiment = re.search(r"^# .* \(`(.*)`\)$", text, re.M)[1]
         for row in re.findall(
-                rf"^\| (\S+) \| .* \| ({OPEN}|reproduced|holds) \| (.*) \| "
+                rf"^\| (\S+) \| .* \| ({OPEN}|reproduced) \| (.*) \| "
                 r"[^|]+ \|$", text.replace("\\|", "/"), re.M):
             yield f"{experiment} {row[0]}", row[1], row[2]
 

@@ -95,10 +95,11 @@ TEST(Digest, PageOfRegressionChecksHasThoseThatFail) {
   const auto campaign =
       named("first", Verdict::reproduced, Verdict::not_reproduced);
   const std::string page = checks_markdown({campaign});
-  expect_words(page,
-               {kWrittenByResults,
-                "| [jpo/toy](jpo-toy.md) R1 | range |  | fails | unknown |",
-                "| jpo | 0 | 0 | 1 | 0 |"});
+  expect_words(
+      page,
+      {kWrittenByResults,
+       "| [jpo/toy](jpo-toy.md) R1 | range |  | not reproduced | unknown |",
+       "| jpo | 0 | 0 | 1 | 0 |"});
   EXPECT_EQ(page.find("P1"), page.npos);
 }
 
@@ -112,7 +113,7 @@ TEST(Digest, PageOfAnExperimentSaysWhereItsNumbersComeFrom) {
                 kWrittenByResults,
                 "](../../RESULTS.md)",
                 "| P1 | a \\| b (Sec. 4) | reproduced | 0.98 (> 0.5) | first |",
-                "| R1 | range | fails |",
+                "| R1 | range | not reproduced |",
                 "## Campaign first",
                 "`./bench reproduce first`",
                 "2024-05-06, A processor (2 cores)",

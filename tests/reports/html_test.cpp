@@ -172,7 +172,9 @@ TEST(ReportHtml, CountsClaimsAndShowsEvidence) {
   // The suite's ranges do not count as what the papers say.
   EXPECT_EQ(count(text, "<strong>0</strong> not reproduced"), 1U);
   EXPECT_EQ(count(text, "<strong>0</strong> not judged"), 1U);
-  EXPECT_EQ(count(text, "0 holds, 2 fails, 2 not judged, 0 reported"), 1U);
+  EXPECT_EQ(
+      count(text, "0 reproduced, 2 not reproduced, 2 not judged, 0 reported"),
+      1U);
   EXPECT_EQ(count(text, "not met: 2.</p>"), 1U);
   const std::string row = between(text, "<tr id=\"jpo-toy-R1\">", "</tr>");
   EXPECT_NE(row.find("✓ reproduced"), row.npos);

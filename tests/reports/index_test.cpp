@@ -172,15 +172,18 @@ std::string sentence_of(const ClaimResult& claim) {
 }
 
 TEST(Index, WhatIsExplainedHasItsCause) {
-  for (const Verdict verdict :
-       {Verdict::differs, Verdict::depends, Verdict::contradiction}) {
+  for (const Verdict verdict : {Verdict::stronger,
+                                Verdict::weaker,
+                                Verdict::differs,
+                                Verdict::depends,
+                                Verdict::contradiction}) {
     ClaimResult c = claim("P5", verdict, 1.25);
     c.cause = "the rate is not printed";
     const std::string words = sentence_of(c);
     EXPECT_NE(words.find("x 1.25, not &gt; 2"), words.npos) << words;
     EXPECT_NE(words.find("Cause: the rate is not printed"), words.npos)
         << words;
-    EXPECT_NE(words.find(words_of(verdict, Origin::paper)), words.npos);
+    EXPECT_NE(words.find(words_of(verdict)), words.npos);
   }
   EXPECT_EQ(sentence_of(claim("P1", Verdict::reproduced, 3)), "");
   EXPECT_EQ(sentence_of(claim("P1", Verdict::reported, 3)), "");

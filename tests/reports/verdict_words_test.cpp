@@ -17,7 +17,7 @@ class WordsOf : public testing::TestWithParam<std::tuple<Verdict, Origin>> {
  protected:
   Verdict verdict_ = std::get<0>(GetParam());
   Origin origin_ = std::get<1>(GetParam());
-  std::string words_{words_of(verdict_, origin_)};
+  std::string words_{words_of(verdict_)};
   ClaimResult claim_{.id = "R1",
                      .says = "a",
                      .from = "quick",
@@ -48,10 +48,8 @@ TEST_P(WordsOf, StandInTheReport) {
 TEST_P(WordsOf, AreDefinedInTheDocumentation) {
   std::ifstream file(PHYSINV_SOURCE_DIR "/docs/verdicts.md");
   const std::string page(std::istreambuf_iterator<char>(file), {});
-  const std::string row = fmt::format("\n| {} | {} | {} | ",
-                                      mark_of(verdict_),
-                                      words_of(verdict_, Origin::paper),
-                                      words_of(verdict_, Origin::suite));
+  const std::string row =
+      fmt::format("\n| {} | {} | ", mark_of(verdict_), words_of(verdict_));
   EXPECT_NE(page.find(row), page.npos) << row;
 }
 
@@ -90,8 +88,7 @@ TEST_P(WordsOf, StandInAComparison) {
       {.experiment = "jpo/toy", .sides = {claim_, std::nullopt}}};
   const Table table = claims_table(changed, {"a", "b"});
   EXPECT_EQ(table.rows[0].cells[0].text, words_);
-  EXPECT_EQ(table.rows[0].cells[1].text,
-            words_of(Verdict::not_judged, Origin::suite));
+  EXPECT_EQ(table.rows[0].cells[1].text, words_of(Verdict::not_judged));
   EXPECT_EQ(
       to_json(Comparison{}, changed, {})["changed_claims"][0]["verdicts"][0],
       words_);

@@ -197,7 +197,7 @@ def incomplete(d):
     expect(10, ["report", "h", "--check"], d, "9 cases not run")
     expect(10, ["verify", "h"], d, "9 cases not run")
     expect(0, ["merge", "h", "h1", "h2"], d, "merged 2")
-    expect(0, ["report", "h", "--check"], d, "1 gating claims judged: 1 hold")
+    expect(0, ["report", "h", "--check"], d, "1 gating claims judged: 1 reproduced")
     only = ["--profile=smoke", "--filter=walk", "--out=only"]
     expect(0, only, d)
     expect(10, ["report", "only", "--check"], d, "no gating claim")
@@ -220,12 +220,12 @@ def known_failures(d):
     expect(7, args, d, "R1", env=doubt)
     expect(0, args, d, "expected to fail: fake/cubic R1: in doubt",
            env={**doubt, **cause})
-    expect(0, args, d, "holds, although its cause says: fake/cubic R1: in d",
+    expect(0, args, d, "reproduced, although its cause says: fake/cubic R1: in d",
            env=cause)
     named = [*args, "--expected=fake/cubic R1"]
     expect(0, named, d, "expected to fail: fake/cubic R1: descend lowers the",
            env=doubt)
-    expect(0, named, d, "holds, although expected to fail: fake/cubic R1")
+    expect(0, named, d, "reproduced, although not expected: fake/cubic R1")
     expect(2, [*args, "--expected=fake/cubic R1, fake/cubic R2"], d,
            "no claim 'fake/cubic R2'")
 

@@ -257,7 +257,8 @@ TEST(Compare, ClaimsThatChangeTheirVerdict) {
   const auto changed = changed_claims(sides);
   ASSERT_EQ(changed.size(), 1U);
   EXPECT_EQ(changed[0].sides[1]->id, "R1");
-  EXPECT_EQ(claims_table(changed, {"a", "b"}).rows[0].cells[1].text, "fails");
+  EXPECT_EQ(claims_table(changed, {"a", "b"}).rows[0].cells[1].text,
+            "not reproduced");
 }
 
 StageRecord ended(Stop stop, double loss = std::nan("")) {
@@ -407,13 +408,13 @@ TEST(Compare, ClaimsGetWorseInOneDirection) {
   // Partly judged is nearly reproduced, explained is nearly failed.
   EXPECT_TRUE(worse(reproduced, partly_judged));
   EXPECT_TRUE(worse(partly_judged, not_judged));
-  for (const Verdict explained : {differs, depends, contradiction}) {
+  for (const Verdict explained : {stronger, weaker, depends, contradiction}) {
     EXPECT_TRUE(worse(reproduced, explained));
     EXPECT_TRUE(worse(explained, not_reproduced));
     EXPECT_TRUE(worse(partly_judged, explained));
     EXPECT_FALSE(worse(explained, not_judged));
     EXPECT_FALSE(worse(not_reproduced, explained));
-    EXPECT_FALSE(worse(differs, explained));
+    EXPECT_FALSE(worse(stronger, explained));
   }
 }
 

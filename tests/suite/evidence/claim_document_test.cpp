@@ -77,7 +77,7 @@ TEST(ClaimDocument, HasClaimsWithPlaceProfileNoteAndCause) {
       "## P1 (Sec. 2.1 (b), Fig. 3) from smoke, no gate\nIt holds,\nas long\n"
       "  as it does\n\n- a: `mean(\"a\", loss()) < 3`\n"
       "- long\n  label: `mean(\"b\",\n  loss()) in 1 .. 7`\n\n"
-      "Note: Read so,\nand so.\n\nDiffers: by {\"a\"}\n\n- b: `Two > 1`\n\n"
+      "Note: Read so,\nand so.\n\nWeaker: by {\"a\"}\n\n- b: `Two > 1`\n\n"
       "## A1\nAnother\n\n- a: `Two`\n\n"
       "## A2 no gate\nOne more\n\nNot run: an hour\n");
   ASSERT_EQ(all.size(), 3U);
@@ -87,7 +87,7 @@ TEST(ClaimDocument, HasClaimsWithPlaceProfileNoteAndCause) {
   EXPECT_FALSE(all[0].gates);
   EXPECT_EQ(all[0].says, "It holds, as long as it does");
   EXPECT_EQ(all[0].note, "Read so, and so.");
-  EXPECT_EQ(all[0].cause.as, Verdict::differs);
+  EXPECT_EQ(all[0].cause.as, Verdict::weaker);
   EXPECT_EQ(all[0].cause.why, "by {\"a\"}");
   ASSERT_EQ(all[0].conditions.size(), 2U);
   EXPECT_EQ(all[0].conditions[1].label, "long label");

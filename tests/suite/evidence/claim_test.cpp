@@ -248,7 +248,8 @@ class Caused : public testing::Test {
 
 TEST_F(Caused, AFailureCountsAsItsCauseSays) {
   for (const Cause& cause : {depends("why"),
-                             differs("why", {holds_}),
+                             stronger("why", {holds_}),
+                             weaker("why", {holds_}),
                              contradiction("why"),
                              fails("why")}) {
     const auto found = of(cause, fails_);
@@ -263,17 +264,17 @@ TEST_F(Caused, AVerdictIsComputedAllTheSame) {
   const auto stale = of(depends("why"), holds_);
   EXPECT_EQ(stale.verdict, Verdict::reproduced);
   EXPECT_EQ(cause_text(stale.verdict, stale.cause),
-            "It holds; its cause is stale: why");
+            "Reproduced; its cause is stale: why");
   EXPECT_EQ(of(not_run("an hour"), holds_).cause, "");
 }
 
 TEST_F(Caused, WhatDoesNotShowExplainsNothing) {
-  const auto found = of(differs("why", {fails_}), fails_);
+  const auto found = of(weaker("why", {fails_}), fails_);
   EXPECT_EQ(found.verdict, Verdict::not_reproduced);
   EXPECT_EQ(found.cause,
             "why (which does not show here: a 3 ± 1.41 (> 9: no))");
   // What was not run is no objection.
-  EXPECT_EQ(of(differs("why", {open_}), fails_).verdict, Verdict::differs);
+  EXPECT_EQ(of(weaker("why", {open_}), fails_).verdict, Verdict::weaker);
 }
 
 TEST_F(Caused, WhatIsNotJudgedSaysWhatItTakes) {

@@ -42,15 +42,17 @@ TEST(ClaimTally, WhatItsCauseExplainsIsNoMiss) {
   auto all = sections();
   ClaimResult& missed = all[0].claims[1];
   missed.cause = "a choice";
-  for (const Verdict v :
-       {Verdict::depends, Verdict::differs, Verdict::contradiction}) {
+  for (const Verdict v : {Verdict::depends,
+                          Verdict::stronger,
+                          Verdict::weaker,
+                          Verdict::differs,
+                          Verdict::contradiction}) {
     missed.verdict = v;
     const auto j = tally(all, {});
     EXPECT_EQ(j.judged, 2u);
     EXPECT_EQ(j.misses, Names{});
-    EXPECT_EQ(
-        j.explained,
-        Names{fmt::format("a/b R2: {}: a choice", words_of(v, Origin::suite))});
+    EXPECT_EQ(j.explained,
+              Names{fmt::format("a/b R2: {}: a choice", words_of(v))});
   }
 }
 
