@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "suite/results/ends.h"
+#include "suite/results/solved_loss.h"
 #include "suite/store/record.h"
 
 namespace physinv {
@@ -61,8 +62,9 @@ struct Reading {
 
 /// From where a difference counts.
 struct Thresholds {
-  double factor = 1.5;   ///< a ratio of times within it is no change
-  double solved = 1e-6;  ///< an example with a loss of at most this is solved
+  double factor = 1.5;  ///< a ratio of times within it is no change
+  double solved =
+      kSolvedByDefault;  ///< an example with a loss of at most this is solved
 };
 
 /// `first` is the same stage on the first side, if that has it.

@@ -12,6 +12,7 @@
 #include "suite/harness/context.h"
 #include "suite/harness/output.h"
 #include "suite/harness/run_case.h"
+#include "suite/results/solved_loss.h"
 
 namespace physinv {
 namespace {
@@ -27,7 +28,7 @@ std::string row(std::string_view name,
                 double seconds) {
   const std::string best =
       std::isfinite(loss) ? fmt::format("{:.2e}", loss) : std::string("-");
-  return fmt::format("{:<{}}  {:<7} {:<10} {:>8} {:>9}",
+  return fmt::format("{:<{}}  {:<7} {:<10} {:>11} {:>9}",
                      name,
                      width,
                      stage,
@@ -49,6 +50,13 @@ double seconds_of(const Clocks& c) {
 }
 
 }  // namespace
+
+std::string_view end_of(Stop stop, double loss) {
+  return stop == Stop::converged && std::isfinite(loss) &&
+                 loss > kSolvedByDefault
+             ? "stationary"
+             : to_string(stop);
+}
 
 std::string duration_text(double seconds) {
   constexpr double kCountable = 3600e6;
@@ -129,13 +137,33 @@ void Progress::finished(std::size_t worker,
       say(record.case_name + ": " + record.message);
     return;
   }
-  put(fmt::format("[{}/{}] {}{}\n",
+  put_line(line, record);
+}
+
+void Progress::put_line(const std::string& row, const StageRecord& record) {
+  const std::string total = std::to_string(stages_);
+  if (!headed_)
+    put(fmt::format(
+        "{:<{}} {}\n", "done", 2 * total.size() + 3, head("median loss")));
+  headed_ = true;
+  put(fmt::format("[{:>{}}/{}] {}{}\n",
                   stages_done_,
-                  stages_,
-                  line,
+                  total.size(),
+                  total,
+                  row,
                   record.message.empty() || record.stop != Stop::failed
                       ? ""
                       : "  " + record.message));
+}
+
+std::string Progress::head(std::string_view loss) const {
+  return fmt::format("{:<{}}  {:<7} {:<10} {:>11} {:>9}",
+                     "case",
+                     name_width(),
+                     "stage",
+                     "end",
+                     loss,
+                     "time");
 }
 
 void Progress::idle(std::size_t worker) {
@@ -174,7 +202,7 @@ std::size_t Progress::name_width() const {
   for (const Case& c : cases_) widest = std::max(widest, c.info.name.size());
   if (!screen_.live) return widest;
   const auto fits =
-      static_cast<std::size_t>(std::max(20, screen_.columns - 42));
+      static_cast<std::size_t>(std::max(20, screen_.columns - 45));
   return std::min(widest, fits);
 }
 
@@ -217,11 +245,12 @@ std::string Progress::finished_row(const StageRecord& record,
   const auto at = static_cast<std::size_t>(record.position);
   const bool solves = c.method == nullptr || at >= c.method->chain.size() ||
                       !is_diagnostic(c.method->chain[at]->options());
+  const double loss = solves ? median_of(record.loss) : std::nan("");
   return row(record.case_name,
              name_width(),
              record.stage,
-             to_string(record.stop),
-             solves ? median_of(record.loss) : std::nan(""),
+             end_of(record.stop, loss),
+             loss,
              seconds_of(record.clocks));
 }
 
@@ -229,15 +258,7 @@ void Progress::draw() {
   const double t = now().wall;
   if (!screen_.live || t - drawn_ < 0.1) return;
   drawn_ = t;
-  std::vector<std::string> lines = {
-      bar(),
-      fmt::format("{:<{}}  {:<7} {:<10} {:>8} {:>9}",
-                  "case",
-                  name_width(),
-                  "stage",
-                  "status",
-                  "best loss",
-                  "time")};
+  std::vector<std::string> lines = {bar(), head("best loss")};
   for (const Running& r : running_)
     if (r.active && lines.size() < 12) lines.push_back(running_row(r, t));
   const std::size_t first_recent = lines.size();

@@ -1,12 +1,13 @@
 /// What the user sees while a campaign runs: on a terminal a bar and a live
-/// table, redrawn at most ten times a second; elsewhere one line per stage.
-/// The time left is estimated from declared operations and the rate measured
-/// so far, not from a count of cases.
+/// table, redrawn at most ten times a second; elsewhere one line per stage,
+/// under heads. The time left is estimated from declared operations and the
+/// rate measured so far, not from a count of cases.
 #pragma once
 
 #include <deque>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "suite/harness/case.h"
@@ -64,6 +65,10 @@ class Progress {
   std::string bar() const;
   std::string running_row(const Running& r, double now) const;
   std::string finished_row(const StageRecord& record, const Case& c) const;
+  std::string head(std::string_view loss) const;
+  /// A line of a finished stage, where nothing is redrawn; heads before the
+  /// first.
+  void put_line(const std::string& row, const StageRecord& record);
   std::size_t name_width() const;
   /// A campaign does not end because nobody can read how it goes: an error
   /// stays in the stream, for whoever prints the result.
@@ -80,7 +85,12 @@ class Progress {
   std::deque<std::string> recent_;
   double begin_, drawn_ = 0;
   int lines_ = 0;
+  bool headed_ = false;
 };
+
+/// How a stage ended, for its line: `stationary` if it converged at a loss
+/// above kSolvedByDefault, for example on a plateau; else the word of `stop`.
+std::string_view end_of(Stop stop, double loss);
 
 /// "3.4 s", "2 min 5 s", "1 h 10 min"; "?" if it is not finite.
 std::string duration_text(double seconds);

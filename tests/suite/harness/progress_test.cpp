@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <sstream>
 
 #include "suite/harness/output.h"
 #include "suite/harness/registry.h"
@@ -40,6 +43,42 @@ TEST(Progress, EstimatesFromOperations) {
   progress.reused(1, 0);
   EXPECT_EQ(progress.remaining(), 0);
   std::fclose(sink);
+}
+
+TEST(Progress, LinesHaveHeadsOnce) {
+  Registry registry;
+  registry.add(fake::experiment());
+  Overrides o;
+  o.methods = {"descend"};
+  o.n = {1, 9};
+  const auto cases = registry.expand("smoke", o);
+  char* text = nullptr;
+  std::size_t size = 0;
+  std::FILE* stream = open_memstream(&text, &size);
+  {
+    Progress progress({.stream = stream}, cases, 1);
+    StageRecord record;
+    record.case_name = cases[0].info.name;
+    record.stage = "solve";
+    record.stop = Stop::converged;
+    record.loss = Vector<double>::Constant(3, 0.531);
+    progress.finished(0, 0, record);
+    record.case_name = cases[1].info.name;
+    record.loss.setConstant(1e-9);
+    progress.finished(0, 1, record);
+  }
+  std::fclose(stream);
+  std::istringstream lines{std::string(text, size)};
+  std::free(text);
+  std::string head, plateau, solved, more;
+  std::getline(lines, head), std::getline(lines, plateau);
+  std::getline(lines, solved);
+  EXPECT_TRUE(head.starts_with("done  case ")) << head;
+  EXPECT_NE(head.find("stage   end        median loss      time"), head.npos);
+  EXPECT_EQ(head.size(), plateau.size());
+  EXPECT_NE(plateau.find("stationary    5.31e-01"), plateau.npos) << plateau;
+  EXPECT_NE(solved.find("converged     1.00e-09"), solved.npos) << solved;
+  EXPECT_FALSE(std::getline(lines, more));
 }
 
 TEST(Duration, Reads) {
