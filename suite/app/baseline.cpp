@@ -96,17 +96,18 @@ ExitCode baseline_verb(const Arguments& arguments) {
   int jobs = 0;
   if (!parse(
           "baseline",
-          "Writes what a campaign, run with --trace, came to: a line per stage "
-          "with hashes, end, losses, work and times. Runs its cases once more "
-          "with data one ulp off, to see which digits are stable.",
+          "Writes a baseline from a campaign that was run with --trace: a line "
+          "per stage with hashes, end, losses, work and times. Runs its cases "
+          "once more with data changed by one ulp to find out which digits are "
+          "stable.",
           {{"RESULTS", "directory that 'run' wrote, or a file in it", &given},
            {"--out",
-            "the baseline; default: reports/baselines/<profile>.txt",
+            "baseline file; default: reports/baselines/<profile>.txt",
             &out,
             "FILE"},
            {"--count",
-            "count the instructions of the cases whose name matches; profiles "
-            "as they are declared alone",
+            "count the instructions of the cases whose name matches; only for "
+            "profiles without overrides",
             &counted,
             "REGEX"},
            {"-j,--jobs", "worker processes; default: cores", &jobs}},

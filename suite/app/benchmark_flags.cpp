@@ -90,19 +90,20 @@ void take_filter(const std::string& flag, Selection& selection) {
 std::vector<Flag> BenchmarkFlags::flags() {
   return {
       {"--benchmark_filter", "the same as --filter", &filter, "REGEX"},
-      {"--benchmark_list_tests", "the names of the cases, and no more", &list},
+      {"--benchmark_list_tests",
+       "print the names of the cases and exit",
+       &list},
       {"--benchmark_repetitions",
-       "measure the times of what runs and of what is reused so many times "
-       "in all; results stay as they are",
+       "measure the times of all stages N times, including reused ones; "
+       "results do not change",
        &repetitions,
        "N"},
       {"--benchmark_format",
-       "of standard output: console (default), json or csv",
+       "format of standard output: console (default), json or csv",
        &format,
        "FORMAT"},
       {"--benchmark_out",
-       "also write the results there, repetitions and their spread "
-       "included",
+       "also write the results to this file, with repetitions and their spread",
        &out,
        "FILE"},
       {"--benchmark_out_format",

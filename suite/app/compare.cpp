@@ -274,13 +274,13 @@ bool parse_flags(const Arguments& arguments, CompareFlags& flags) {
         &flags.out,
         "DIR"},
        {"--one-file",
-        "of --out: one page that has everything",
+        "with --out: write one page that contains everything",
         &flags.one_file},
        {"--lines", "rows of a table at most (default 30)", &flags.lines},
        {"--fail-on",
-        fmt::format("exit 5 if this got worse in any pair of runs, 6 if "
-                    "only time did; a stage that ends worse counts for "
-                    "time and work, too; repeats unite: {}",
+        fmt::format("exit 5 if this got worse in any pair of runs, 6 if only "
+                    "time did; a stage that ends worse also counts for time "
+                    "and work; can be repeated: {}",
                     kAspects),
         &flags.fail_on,
         "WHAT"},

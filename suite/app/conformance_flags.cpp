@@ -43,12 +43,13 @@ bool parse_conformance(const Arguments& arguments, ConformanceFlags& flags) {
   }
   return parse(
       "conformance",
-      "Runs the contract tests over what plug-ins register, or else the "
-      "program: derivatives against differences and each other, forward and "
-      "linearize bit by bit, batches against their samples, a NaN that stays "
-      "its own, budgets, repetition, records, claims. A line for each check. "
-      "GoogleTest's --gtest_filter, --gtest_output and the like go along. Exit "
-      "4 if a check fails, 3 if nothing matched.",
+      "Runs the contract tests for everything that plug-ins register or, "
+      "without plug-ins, the program. They check derivatives against "
+      "differences and each other, forward and linearize bit by bit, batches "
+      "against their samples, no effect of a NaN on other samples, budgets, "
+      "repetition, records and claims. Prints a line for each check. Flags of "
+      "GoogleTest, such as --gtest_filter and --gtest_output, are passed on. "
+      "Exit 4 if a check fails, 3 if nothing matched.",
       {{.name = "FILTER",
         .help = "regular expressions of experiments",
         .to = &flags.filters,

@@ -36,27 +36,25 @@ std::string exported(const Loaded& loaded, const std::string& format) {
 
 ExitCode export_verb(const Arguments& arguments) {
   std::string directory, format = "json", out;
-  if (!parse(
-          "export",
-          "Results for dashboards, made from the journal and the case files, "
-          "with the spread of repetitions (run --benchmark_repetitions). A "
-          "stage that failed, was skipped, diverged or was not run has no time "
-          "and no loss. It is an error: error_occurred in json and csv, in "
-          "github and bencher the measure error, 1 instead of 0, which every "
-          "stage has, so that a series of it alarms; in tidy the end stands as "
-          "the status of each example. A stage whose cores were shared is "
-          "marked crowded: label in csv, extra in github, a measure in "
-          "bencher, a column in tidy. Exit 10 if stages failed, were skipped "
-          "or not run; what there is is written all the same.",
-          {{"RESULTS", "directory that 'run' wrote", &directory},
-           {"--format",
-            "json or csv (Google Benchmark's), tidy (CSV, a row for every "
-            "example of every stage), github (customSmallerIsBetter "
-            "of github-action-benchmark), bencher (Bencher Metric Format)",
-            &format,
-            "FORMAT"},
-           {"--out", "default: standard output", &out, "FILE"}},
-          arguments))
+  if (!parse("export",
+             "Converts results for dashboards and other programs, with the "
+             "spread of repetitions (run --benchmark_repetitions). A stage "
+             "that failed, was skipped, diverged or was not run has no time "
+             "and no loss, but an error: error_occurred in json and csv; in "
+             "github and bencher the measure error, which is 1 instead of 0; "
+             "in tidy the status of each example. A stage whose cores were "
+             "shared is marked as crowded: label in csv, extra in github, a "
+             "measure in bencher, a column in tidy. Exit 10 if stages failed, "
+             "were skipped or not run; the other stages are written.",
+             {{"RESULTS", "directory that 'run' wrote", &directory},
+              {"--format",
+               "json or csv (Google Benchmark's), tidy (CSV, a row for every "
+               "example of every stage), github (customSmallerIsBetter "
+               "of github-action-benchmark), bencher (Bencher Metric Format)",
+               &format,
+               "FORMAT"},
+              {"--out", "output file; default: standard output", &out, "FILE"}},
+             arguments))
     return ExitCode::good;
   const Loaded loaded = load(directory, stderr);
   const std::string text = exported(loaded, format);

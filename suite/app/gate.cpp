@@ -288,14 +288,13 @@ void check(const GateFlags& flags) {
 
 ExitCode gate_verb(const Arguments& arguments) {
   GateFlags flags;
-  if (!parse(
-          "gate",
-          "Runs the cases of a baseline and holds each stage against it: the "
-          "same bits where compiler, flags and libraries are the baseline's, "
-          "elsewhere its stable digits. Exit 5 if a stage is worse or missing, "
-          "6 if it is slower.",
-          flags.flags(),
-          arguments))
+  if (!parse("gate",
+             "Runs the cases of a baseline and compares each stage with it: "
+             "bits if compiler, flags and libraries are the baseline's, "
+             "otherwise stable digits. Exit 5 if a stage is worse or missing, "
+             "6 if it is slower.",
+             flags.flags(),
+             arguments))
     return ExitCode::good;
   check(flags);
   if (!flags.against.empty()) program_in("--against", flags.against);

@@ -10,46 +10,51 @@ namespace physinv {
 
 std::vector<Flag> GateFlags::flags() {
   return {
-      {"--baseline", "what 'baseline' wrote", &baseline, "FILE"},
+      {"--baseline", "file that 'baseline' wrote", &baseline, "FILE"},
       {"--against",
-       "another physinv-bench, or its build directory: compare times by the "
-       "clock",
+       "another physinv-bench or its build directory, to compare measured "
+       "times with",
        &against,
        "PROGRAM"},
       {"--head",
-       "what --against is compared with; default: this program",
+       "program that is compared with --against; default: this program",
        &head,
        "PROGRAM"},
       {"--filter",
-       "of the cases: regular expressions, as the --filter of 'run' that are "
-       "no words",
+       "regular expressions that select cases; words are not treated specially "
+       "as by 'run'",
        &filters,
        "REGEX"},
       {"--profile",
-       "the baseline's; without a baseline smoke",
+       "profile; default: the baseline's, or smoke without a baseline",
        &profile,
        "NAME"},
       {"--results",
        "judge this campaign, run with --trace, instead of running one",
        &results,
        "DIR"},
-      {"--out", "where to run; default: results/gate", &out, "DIR"},
+      {"--out", "directory of the run; default: results/gate", &out, "DIR"},
       {"-j,--jobs", "worker processes; default: cores", &jobs},
-      {"--allow-work", "counters of work may grow", &allow_work},
+      {"--allow-work", "allow counters of work to grow", &allow_work},
       {"--count,!--no-count",
        "count instructions where the baseline has them (default)",
        &count},
-      {"--budget", "of --against; default: 300 seconds", &budget, "SECONDS"},
+      {"--budget",
+       "time budget of --against; default: 300 seconds",
+       &budget,
+       "SECONDS"},
       {"--within",
-       "what --against takes for equal; default: 2 percent",
+       "difference that --against treats as equal; default: 2 percent",
        &within,
        "PERCENT"},
-      {"--seed", "of the order of --against's pairs; default: 1", &seed},
-      {"--strict", "what could not be decided ends with exit code 8", &strict},
+      {"--seed", "seed for the order of --against's pairs; default: 1", &seed},
+      {"--strict",
+       "exit with code 8 if something could not be decided",
+       &strict},
       {"--update",
        "renew the baseline's lines of these cases and print what changed",
        &update},
-      {"--json", "the findings as JSON", &json, "FILE"}};
+      {"--json", "write the findings as JSON", &json, "FILE"}};
 }
 
 MeasureOptions GateFlags::measuring() const {

@@ -117,14 +117,17 @@ nlohmann::ordered_json history_origin(const std::string& baseline) {
 ExitCode history_verb(const Arguments& arguments) {
   std::string baseline = kGateBaseline, out = "results/history";
   if (!parse("history",
-             "Pages of what the gate's baseline said, commit by commit: "
-             "losses, instructions and seconds, linked over what two "
-             "baselines have in common. Made from git.",
+             "Writes pages of the gate's baseline over the commits in git: "
+             "losses, instructions and seconds. Baselines are linked by the "
+             "stages that two of them have in common.",
              {{"--baseline",
-               fmt::format("which (default {})", kGateBaseline),
+               fmt::format("baseline file (default {})", kGateBaseline),
                &baseline,
                "FILE"},
-              {"--out", "where to (default results/history)", &out, "DIR"}},
+              {"--out",
+               "output directory (default results/history)",
+               &out,
+               "DIR"}},
              arguments))
     return ExitCode::good;
   if (fs::path(baseline).is_absolute())

@@ -207,26 +207,25 @@ ExitCode list_verb(const Arguments& arguments) {
   bool json = false, methods = false, claims = false, validate = false;
   if (!parse(
           "list",
-          "The cases of a profile, with estimated work.",
+          "Lists the cases of a profile with estimated work.",
           selection.flags(
               {selection.arguments(),
                {"--json", "the same as --format=json", &json},
                {"--format",
-                "text, of --claims markdown (both as a rule), or json",
+                "text (default), markdown (default of --claims) or json",
                 &format,
                 "FORMAT"},
                {"--edit",
-                "the stages that an edit of this source makes stale",
+                "list the stages that an edit of this source invalidates",
                 &edited,
                 "FILE"},
-               {"--methods", "experiments and methods, as Markdown", &methods},
+               {"--methods",
+                "list experiments and methods, as Markdown",
+                &methods},
                {"--claims",
-                "what is claimed, whose it is and what decides "
-                "it",
+                "list claims with their origin and conditions",
                 &claims},
-               {"--validate",
-                "is everything registered as it should be?",
-                &validate}}),
+               {"--validate", "check all registered experiments", &validate}}),
           arguments))
     return ExitCode::good;
   json = is_json(json, format, claims);

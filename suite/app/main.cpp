@@ -30,20 +30,19 @@ namespace physinv {
 namespace {
 
 constexpr std::string_view kTitle =
-    "Physics inverse problems: benchmarks of the papers, reproduced and "
-    "timed.\n\n";
+    "Physics inverse problems: reproduces and times benchmarks of papers.\n\n";
 
 constexpr std::string_view kEnvironmentHelp = R"(
-environment; a variable that is empty counts as one that is not set
+environment; an empty variable counts as not set
   NO_COLOR   no colours
   COLUMNS    width of the live table
   CI, TERM=dumb, or no terminal: plain lines, one per stage
   BENCHMARK_FILTER, BENCHMARK_OUT, BENCHMARK_OUT_FORMAT, BENCHMARK_FORMAT,
-  BENCHMARK_REPETITIONS, BENCHMARK_LIST_TESTS: as the flags of run, which go
-             before them
-  PHYSINV_PLUGINS  plug-ins to load, as --plugin, with colons between them
-  GTEST_TOTAL_SHARDS, GTEST_SHARD_INDEX (from 0): as --shard
-  XDG_CACHE_HOME  where the speeds of this machine are kept (~/.cache)
+  BENCHMARK_REPETITIONS, BENCHMARK_LIST_TESTS: the same as the flags of run,
+             which take precedence
+  PHYSINV_PLUGINS  plug-ins to load, as --plugin, separated by colons
+  GTEST_TOTAL_SHARDS, GTEST_SHARD_INDEX (from 0): the same as --shard
+  XDG_CACHE_HOME  directory of the measured speed of this machine (~/.cache)
 )";
 
 std::string help_line(std::string_view usage, std::string_view about) {
@@ -59,9 +58,10 @@ std::string help_text() {
                     verb.name == "run" ? "[run]" : std::string(verb.name),
                     verb.takes),
         verb.about);
-  text += help_line("VERB --help", "flags of a verb; also: help VERB");
-  text += help_line("--plugin=FILE ..", "with a plug-in, before or after VERB");
-  text += help_line("--version, -V", "version and build");
+  text +=
+      help_line("VERB --help", "print the flags of a verb; also: help VERB");
+  text += help_line("--plugin=FILE ..", "load a plug-in, before or after VERB");
+  text += help_line("--version, -V", "print version and build");
   text += "\nexamples\n";
   for (const auto& example : program().examples)
     text += fmt::format("  {} {}\n", program().name, example);

@@ -12,11 +12,13 @@ ExitCode merge_verb(const Arguments& arguments) {
   std::vector<std::string> shards;
   LockOptions lock;
   if (!parse("merge",
-             "Joins the results of shards into what an unsharded run gives, "
-             "times apart.",
+             "Merges the results of shards. The merged results equal those of "
+             "an unsharded run, except for times.",
              {{"OUT", "directory to write", &out},
               {"SHARD", "directories that 'run' wrote", &shards},
-              {"--break-lock", "as of run, for OUT", &lock.break_lock}},
+              {"--break-lock",
+               "same as for run, for the lock of OUT",
+               &lock.break_lock}},
              arguments))
     return ExitCode::good;
   std::vector<std::filesystem::path> paths;

@@ -144,14 +144,14 @@ std::vector<Flag> Selection::flags(const std::vector<Flag>& own) {
   std::vector<Flag> chosen = {
       {"--filter",
        fmt::format("select cases by name: a word, such as billiards, selects "
-                   "papers' experiments that have it as a part of their name; "
+                   "the papers' experiments whose name has it as a part; "
                    "anything else is a regular expression; a leading - "
                    "excludes ({}); several filters are combined",
                    filter_example(profile)),
        &filters,
        "REGEX"},
       {"--all",
-       "search words in all experiments, also in those of no paper (matrix, "
+       "search words in all experiments, including those of no paper (matrix, "
        "numerics)",
        &all},
       {"--profile",
@@ -171,7 +171,7 @@ std::vector<Flag> Selection::flags(const std::vector<Flag>& own) {
        &shard,
        "I/N"},
       {"--cases",
-       "only selected cases whose names are in this file, one per line",
+       "run only selected cases whose names are in this file, one per line",
        &list,
        "FILE"}};
   chosen.insert(chosen.end(), own.begin(), own.end());

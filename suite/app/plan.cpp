@@ -305,31 +305,31 @@ ExitCode plan_verb(const Arguments& arguments) {
   bool json = false, workers = false, from = false, each = false, exact = false;
   if (!parse(
           "plan",
-          "What a selection will cost: time, peak memory and disk of each "
-          "experiment and in sum. Times are those of published campaigns, by "
-          "counted operations and this machine's speed; of other methods those "
-          "that --exact measured and the user's cache directory keeps.",
+          "Predicts time, peak memory and disk space of each experiment and in "
+          "total. Times of published campaigns are scaled by counted "
+          "operations and the speed of this machine. For other methods, times "
+          "that --exact measured are read from the user's cache directory.",
           selection.flags(
               {selection.arguments(),
-               {"--each", "a line for each case", &each},
+               {"--each", "print a line for each case", &each},
                {"--exact",
-                "try all chains by short runs, however long that takes",
+                "measure all methods by short runs, without a time limit",
                 &exact},
-               {"--json", "each case as JSON", &json},
+               {"--json", "print each case as JSON", &json},
                {"--against",
-                "results of this selection: shows what was measured beside "
-                "what is predicted",
+                "results of this selection: print measured next to predicted "
+                "values",
                 &beside,
                 "RESULTS"},
                {"--measured",
-                "take the times of --against themselves, where it has them",
+                "use the times of --against where it has them",
                 &from},
                {"--plot",
-                "draw predicted against measured times there, as SVG",
+                "write a plot of predicted against measured times, as SVG",
                 &plot,
                 "FILE"},
                {"--workers",
-                "time and efficiency of 1 to 1000 workers, longest case "
+                "print time and efficiency of 1 to 1000 workers, longest case "
                 "first",
                 &workers}}),
           arguments))

@@ -132,20 +132,24 @@ bool parse_flags(const Arguments& arguments, ReportFlags& flags) {
       {{"RESULTS",
         "directory that 'run' or 'report --publish' wrote",
         &flags.results},
-       {"--out", "where to; default: RESULTS/report", &flags.out, "DIR"},
-       {"--one-file", "one page that has everything", &flags.one_file},
+       {"--out",
+        "output directory; default: RESULTS/report",
+        &flags.out,
+        "DIR"},
+       {"--one-file",
+        "write one page that contains everything",
+        &flags.one_file},
        {"--publish",
-        "also keep results.json (compressed), a digest of claims and "
-        "tables, "
-        "and figures there, for the verb 'results'",
+        "also write results.json (compressed), a digest of claims and tables, "
+        "and figures to this directory, for the verb 'results'",
         &flags.publish,
         "DIR"},
        {"--check",
-        "exit 7 if a gating claim is not reproduced and states no cause of "
-        "it, 10 if these runs decide none",
+        "exit 7 if a gating claim is not reproduced and states no cause, 10 if "
+        "these runs decide none",
         &flags.check},
        {"--expected",
-        "claims that --check lets fail without a cause, as 'jpo/arm R3, "
+        "claims that need no cause for --check, such as 'jpo/arm R3, "
         "jpo/billiards P1'",
         &flags.expected,
         "CLAIMS"}},

@@ -228,13 +228,12 @@ std::size_t show_changes(const std::vector<Again>& all,
 bool parse_flags(const Arguments& arguments, ReproduceFlags& flags) {
   return parse(
       "reproduce",
-      "Runs published campaigns again, case by case as they were run, "
-      "and writes the same pages of what comes out: all that decide a "
-      "claim of a paper, or those that are named. What is finished "
-      "is reused. Exit 7 if a claim comes to another verdict, 10 if "
+      "Runs the cases of published campaigns again and writes the same pages "
+      "from the results: the named campaigns, or all that decide a claim of a "
+      "paper. Finished stages are reused. Exit 7 if a verdict changed, 10 if "
       "something did not run.",
       {{.name = "CAMPAIGN",
-        .help = "of RESULTS.md, such as 41-paper-jpo-billiards",
+        .help = "name from RESULTS.md, such as 41-paper-jpo-billiards",
         .to = &flags.names,
         .optional = true},
        {"--paper", "jpo, hig, sip or physgrad", &flags.paper, "KEY"},
@@ -242,9 +241,12 @@ bool parse_flags(const Arguments& arguments, ReproduceFlags& flags) {
         "folder of published campaigns (default reports/campaigns)",
         &flags.campaigns,
         "DIR"},
-       {"--out", "where to (default results/reproduce)", &flags.out, "DIR"},
+       {"--out",
+        "output directory (default results/reproduce)",
+        &flags.out,
+        "DIR"},
        {"-j,--jobs", "worker processes; default: cores", &flags.jobs},
-       {"--dry-run", "say what would run, and what it took", &flags.dry}},
+       {"--dry-run", "print what would run and the time it took", &flags.dry}},
       arguments);
 }
 

@@ -90,29 +90,31 @@ void write_pages(const fs::path& directory,
 
 ExitCode results_verb(const Arguments& arguments) {
   std::string campaigns = "reports/campaigns", out = "RESULTS.md", pages, html;
-  if (!parse("results",
-             "Writes an overview of all published campaigns: the answer to "
-             "each paper's main question, and the statements that are not "
-             "reproduced with their causes. Writes a page for each experiment "
-             "with its statements, tables, figures, machine, build, date and "
-             "command, and a page of regression checks. Claims are judged by "
-             "the numbers that the campaigns stored.",
-             {{"--campaigns",
-               "folder of what report --publish wrote; the newest that decided "
-               "a claim counts (default reports/campaigns)",
-               &campaigns,
-               "DIR"},
-              {"--out", "the page (default RESULTS.md)", &out, "FILE"},
-              {"--pages",
-               "those of the experiments (default docs/results beside it)",
-               &pages,
-               "DIR"},
-              {"--html",
-               "instead, HTML pages of each campaign, what leads to them, and "
-               "the history of the gate",
-               &html,
-               "DIR"}},
-             arguments))
+  if (!parse(
+          "results",
+          "Writes an overview of all published campaigns: the answer to "
+          "each paper's main question, and the statements that are not "
+          "reproduced with their causes. Writes a page for each experiment "
+          "with its statements, tables, figures, machine, build, date and "
+          "command, and a page of regression checks. Claims are judged by "
+          "the numbers that the campaigns stored.",
+          {{"--campaigns",
+            "folder of published campaigns (report --publish); the newest "
+            "campaign that decided a claim counts (default reports/campaigns)",
+            &campaigns,
+            "DIR"},
+           {"--out", "the overview (default RESULTS.md)", &out, "FILE"},
+           {"--pages",
+            "directory for the pages of experiments (default docs/results next "
+            "to the overview)",
+            &pages,
+            "DIR"},
+           {"--html",
+            "write HTML pages of each campaign, an index and the history of "
+            "the gate to this directory instead",
+            &html,
+            "DIR"}},
+          arguments))
     return ExitCode::good;
   const auto found = published_digests(campaigns);
   const Published published(published_directory());

@@ -74,7 +74,7 @@ struct RunFlags {
          "TIME"},
         {"--break-lock",
          "on file systems without locks: remove the lock of a process on "
-         "another machine that has ended; its name is shown",
+         "another machine that has ended; its name is printed",
          &campaign.break_lock},
         {"--config",
          "read flags from this TOML or JSON file; flags on the command line "

@@ -194,9 +194,9 @@ ExitCode submit_verb(const Arguments& arguments) {
   SubmitFlags flags;
   if (!parse("submit",
              "Splits a campaign by predicted time, longest case first, and "
-             "submits it to Slurm: an array of tasks that go on where they "
-             "were interrupted, and a merge after it. The same command again "
-             "submits what is missing. Options of sbatch follow --.",
+             "submits it to Slurm: an array of tasks, which resume after an "
+             "interruption, and a merge. The same command submits again what "
+             "is missing. Put options of sbatch after --.",
              flags.selection.flags(
                  {{"--slurm",
                    "the campaign's directory, on a file system that all nodes "
@@ -204,10 +204,14 @@ ExitCode submit_verb(const Arguments& arguments) {
                    &flags.directory,
                    "DIR"},
                   {"--tasks",
-                   "of the array (default 16, at most one per case)",
+                   "tasks of the array (default 16, at most one per case)",
                    &flags.tasks},
-                  {"-j,--jobs", "worker processes of a task (1)", &flags.jobs},
-                  {"--threads", "inside a case (1)", &flags.threads}}),
+                  {"-j,--jobs",
+                   "worker processes of a task (default 1)",
+                   &flags.jobs},
+                  {"--threads",
+                   "threads inside a case (default 1)",
+                   &flags.threads}}),
              own))
     return ExitCode::good;
   if (flags.directory.empty())
@@ -239,9 +243,9 @@ ExitCode submit_verb(const Arguments& arguments) {
 ExitCode status_verb(const Arguments& arguments) {
   std::string directory;
   if (!parse("status",
-             "How a submitted campaign stands, by what its tasks have stored "
-             "and by Slurm's queue. Exit 0 if all is done, 4 if a case failed, "
-             "10 if some are missing.",
+             "Prints the progress of a submitted campaign from its stored "
+             "results and Slurm's queue. Exit 0 if all cases are done, 4 if a "
+             "case failed, 10 if some are missing.",
              {{"DIR", "directory that 'submit' wrote", &directory}},
              arguments))
     return ExitCode::good;

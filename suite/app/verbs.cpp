@@ -9,52 +9,43 @@ namespace {
 std::vector<Verb> verbs() {
   return {
       {"run", "[FILTER]", "run cases (the default verb)", run_verb},
-      {"list",
-       "[FILTER]",
-       "the cases, their stages and estimated work",
-       list_verb},
-      {"plan", "[FILTER]", "time, memory and disk of a selection", plan_verb},
+      {"list", "[FILTER]", "list cases, stages and estimated work", list_verb},
+      {"plan", "[FILTER]", "predict time, memory and disk space", plan_verb},
       {"report",
        "RESULTS",
-       "tables, plots and claims of a campaign",
+       "write tables, plots and claims of a campaign",
        report_verb},
-      {"results", "", "pages of all published campaigns", results_verb},
+      {"results", "", "write pages of all published campaigns", results_verb},
       {"reproduce",
        "[CAMPAIGN]",
-       "run published campaigns again, and what differs",
+       "run published campaigns again and compare verdicts",
        reproduce_verb},
-      {"history",
-       "",
-       "the gate's numbers over the commits, as a page",
-       history_verb},
+      {"history", "", "plot the gate's numbers over commits", history_verb},
       {"verify", "RESULTS", "recompute every final loss", verify_verb},
       {"merge", "OUT SHARD..", "join the results of shards", merge_verb},
       {"baseline",
        "RESULTS",
-       "what a campaign came to, as a text for reviews",
+       "write a campaign's results as a baseline",
        baseline_verb},
-      {"gate", "[flags]", "runs a baseline's cases: worse? slower?", gate_verb},
-      {"compare",
-       "A B..",
-       "campaigns side by side, what changed most",
-       compare_verb},
-      {"export", "RESULTS", "for dashboards and other programs", export_verb},
-      {"completion",
-       "SHELL",
-       "completion for bash, zsh or fish",
-       completion_verb},
-      {"submit",
+      {"gate",
        "[flags]",
-       "a campaign as an array of Slurm jobs",
-       submit_verb},
-      {"status", "DIR", "how it stands", status_verb},
+       "check for worse results and longer times",
+       gate_verb},
+      {"compare", "A B..", "compare campaigns", compare_verb},
+      {"export", "RESULTS", "convert results for other programs", export_verb},
+      {"completion", "SHELL", "print shell completion", completion_verb},
+      {"submit", "[flags]", "submit a campaign to Slurm", submit_verb},
+      {"status",
+       "DIR",
+       "print the progress of a submitted campaign",
+       status_verb},
       {"conformance",
        "[FILTER]",
-       "contract tests over what is registered",
+       "run contract tests of problems and methods",
        conformance_verb},
       {"kernels",
        "[flags]",
-       "kernel benchmarks (flags of Google Benchmark)",
+       "run kernel benchmarks (flags of Google Benchmark)",
        kernels_verb}};
 }
 
@@ -70,10 +61,10 @@ const Program& program() {
                    "list --profile=smoke",
                    "report results/quick"},
       .environment =
-          R"(  PHYSINV_COUNT  the program whose instructions gate counts
+          R"(  PHYSINV_COUNT  the program that gate counts instructions of
   PHYSINV_PUBLISHED_DIR  the papers' numbers (reports/published)
-  PHYSINV_SLURM_SECONDS  how long sbatch and squeue may take to answer (30)
-  PHYSINV_NO_REPORT  run ends without a page, as with --no-report
+  PHYSINV_SLURM_SECONDS  timeout of sbatch and squeue in seconds (30)
+  PHYSINV_NO_REPORT  run writes no page, as with --no-report
 )",
       .conclude = conclude};
   return bench;

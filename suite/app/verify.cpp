@@ -42,8 +42,8 @@ ExitCode verify_verb(const Arguments& arguments) {
   if (!parse("verify",
              "Recomputes every final loss from the stored solutions, one "
              "example at a time in double, and compares bitwise or within "
-             "1e-12 relative. Solutions that are not stored are made again "
-             "from the network's parameters, by plain loops, and compared "
+             "1e-12 relative. Solutions that are not stored are recomputed "
+             "from the network's parameters by plain loops, and compared "
              "within 1e-9. Exit 4 if one differs, 10 if stages are missing.",
              {{"RESULTS", "directory that 'run' wrote", &directory}},
              arguments))

@@ -28,23 +28,23 @@ enum class ExitCode : int {
 inline constexpr std::string_view kExitCodeHelp =
     R"(    0  good, and complete
     1  internal error
-    2  usage, or input that cannot be read
-    3  nothing matched; the nearest names are shown
+    2  wrong usage, or input that cannot be read
+    3  nothing matched; the nearest names are printed
     4  a case failed (exception, out of memory), verify found a mismatch, or
        conformance a broken contract; divergence is a result
-    5  gate: a stage is worse than the baseline says, or missing; compare
+    5  gate: a stage is worse than in the baseline, or missing; compare
        --fail-on: losses, statuses, claims or work got worse, or runs are
        missing
-    6  slower: gate, by instructions or by the clock; compare --fail-on, where
+    6  slower: gate, by instructions or measured time; compare --fail-on, if
        nothing else got worse
-    7  a gating claim is not reproduced and states no cause of it
-       (report --check); a claim comes to another verdict (reproduce)
-    8  gate --strict: the clock came to no verdict within its budget
+    7  a gating claim is not reproduced and states no cause (report --check);
+       a verdict changed (reproduce)
+    8  gate --strict: the timing comparison was not decided within its budget
     9  environment: disk full, unwritable, corrupt store
    10  incomplete: cases not run (--time-budget, shards missing), stages that
        failed or lost their arrays, no plan.json, or nothing to judge (report
-       --check); what is there was run, reported, verified or merged
-  130  interrupted; what had finished is kept
+       --check); everything else was run, reported, verified or merged
+  130  interrupted; finished stages are kept
 )";
 
 class ExitError : public std::runtime_error {

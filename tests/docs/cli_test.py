@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""cli_test.py PROGRAM SOURCES [--write]: docs/cli.md is what the program's
---help says; with --write it becomes that."""
+"""cli_test.py PROGRAM SOURCES [--write]: docs/cli.md has the output of --help;
+--write renews it."""
 
 import os
 import subprocess
@@ -10,9 +10,9 @@ PROGRAM, SOURCES = sys.argv[1:3]
 PAGE = os.path.join(SOURCES, "docs", "cli.md")
 HEAD = """# Command line
 
-What `./bench VERB --help` says, of all verbs; `./bench` builds the program and
-passes on what it is given. Written by `tests/docs/cli_test.py PROGRAM . --write`, and
-a test holds it. [Running](running.md) says what the flags are for.
+This page has the output of `./bench VERB --help` for all verbs. `./bench` builds the
+program and passes its arguments on. `tests/docs/cli_test.py PROGRAM . --write` writes this
+page, and a test compares it with the program. [Running](running.md) explains the flags.
 """
 
 

@@ -3,7 +3,8 @@
 
 README is short, every link leads to a file and place, commands have the verbs and
 flags of the program, counts are the program's and verdicts those of RESULTS.md,
-where what is not reproduced has a cause. Prose has short sentences and usual words.
+where what is not reproduced has a cause. Prose and help texts have short sentences
+and usual words.
 Pages of papers have no measured numbers:
 those stand on pages that the program writes. The table of features has a sign of
 each suite. The baseline of CI has all cases of its profile. A source that a page or
@@ -101,15 +102,17 @@ def measured(name, text):
 
 
 # Pages whose prose is held to plain English.
-PLAIN = {"README.md", *(f"docs/{name}.md" for name in (
-    "architecture", "clusters", "compare", "data", "gate", "methods",
-    "numerics", "output", "processors", "python", "running", "verdicts"))}
+PLAIN = {"README.md", "CONTRIBUTING.md", *(f"docs/{name}.md" for name in (
+    "architecture", "claims", "clusters", "compare", "data", "extending",
+    "features", "gate", "methods", "numerics", "output", "performance",
+    "processors", "python", "running", "solvers", "tutorial", "verdicts"))}
 LONGEST_SENTENCE = 35  # words
 # What these say has a usual word: next to, running, saves, resumes, prints, ...
 UNUSUAL = re.compile(
     r"\b(besides?|whoever|nobody|under way|anew|all else|one's own|lays? down|"
-    r"takes? up|took up|c[ao]mes? to|goes by|stands? (?:in|at|apart|below|on)|"
-    r"(?:is|are) told|tells|holds? against)\b", re.I)
+    r"(?:takes?|taken|took) up|c[ao]mes? to|goe?s? by|hangs? on|goe?s? along|"
+    r"all the same|stands? (?:in|at|apart|below|on|beside)|held against|"
+    r"(?:is|are) told|tells|holds? (?:it|them )?against)\b", re.I)
 
 
 def prose(text):
@@ -122,8 +125,6 @@ def prose(text):
 
 def not_plain(name, text):
     """Words that have a usual one, and sentences that are too long."""
-    if name not in PLAIN:
-        return
     for words in prose(text):
         for found in UNUSUAL.finditer(words):
             yield (f"{name}: '{found[0]}' in "
@@ -132,6 +133,19 @@ def not_plain(name, text):
             count = len(sentence.split())
             if count > LONGEST_SENTENCE:
                 yield f"{name}: {count} words: {sentence[:60]}..."
+
+
+def help_not_plain():
+    """The same of what --help prints, a line of each option."""
+    verbs = set(output("--list-verbs").split()) - {"kernels"}
+    for verb in [(), *((verb,) for verb in sorted(verbs))]:
+        text = output(*verb, "--help")
+        if len(text) < 100:
+            yield f"--help of {verb} says nothing"
+        words = re.sub(r"\n {10,}", " ", text)  # lines that go on
+        words = re.sub(r"\s*\n\s*", "\n\n", re.sub(r"`.*?`", "x", words))
+        name = " ".join(["--help of", *verb])
+        yield from not_plain(name, words.replace("  ", ": "))
 
 
 SUITES = 17
@@ -261,14 +275,16 @@ def unexplained():
 
 def main():
     wrong = [*wrong_counts(), *wrong_verdicts(), *unexplained(), *features(),
-             *baseline(), *lost_in_comments()]
+             *baseline(), *lost_in_comments(), *help_not_plain()]
     lines = read("README.md").count("\n")
     if lines > LINES_OF_README:
         wrong.append(f"README.md has {lines} lines, of {LINES_OF_README}")
     checked = 0
     for name, text in pages(SOURCES):
         wrong += [*dead_links(name, text), *unknown_words(name, text),
-                  *measured(name, text), *not_plain(name, text)]
+                  *measured(name, text)]
+        if name in PLAIN:
+            wrong += not_plain(name, text)
         if name != "CHANGELOG.md":  # names what was
             spans = re.findall("`[^`\n]*`", text)
             wrong += lost_sources(name, "\n".join(spans))
