@@ -1,12 +1,19 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <functional>
+#include <numbers>
+#include <string>
 #include <vector>
 
 #include "suite/cases/sip/sine/score.h"
+#include "suite/core/math.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/landscape.h"
 #include "suite/evidence/method_table.h"
+#include "suite/evidence/picture.h"
 #include "suite/evidence/series.h"
 #include "suite/evidence/statistics.h"
 #include "suite/evidence/training_report.h"
@@ -113,6 +120,66 @@ Figure landscape() {
           .columns = 1};
 }
 
+constexpr double kPeriod = 2 * std::numbers::pi;
+
+/// u = (gamma / xi w_1, gamma xi w_2), w = R x, in which the problem is
+/// (sin u_1, u_2) for every stretch and turn.
+std::array<double, 2> unstretched(const SinePlaneOptions& o, const Pair& x) {
+  const double phi = o.degrees * std::numbers::pi / 180;
+  const double c = math::cos(phi), s = math::sin(phi);
+  return {o.gamma / o.xi * (c * x[0] - s * x[1]),
+          o.gamma * o.xi * (s * x[0] + c * x[1])};
+}
+
+/// The loss of one target, an answer, and the solution nearest to it.
+Panel answer(const Point& p, const FoundBy& found, const Pictured& problem) {
+  constexpr double kHighest = 1.5;  // of u_2, which targets hold within 1
+  const SinePlaneOptions o = options_of(p);
+  const Pair x = {found.x(0), found.x(1)};
+  const Pair nearest = nearest_solution(o, x, {problem.y(0), problem.y(1)});
+  Panel panel{
+      .title = fmt::format("{}: distance {:.2g}",
+                           found.who,
+                           math::hypot(x[0] - nearest[0], x[1] - nearest[1])),
+      .x_label = "u_1",
+      .y_label = "u_2",
+      .field =
+          loss_over_plane(*problems::sine_plane({.gamma = 1}).make<double>(),
+                          {problem.y},
+                          spaced(-kPeriod, kPeriod, 81),
+                          spaced(-kHighest, kHighest, 41))};
+  const auto at = unstretched(o, x), wanted = unstretched(o, nearest);
+  const double turns = kPeriod * std::round(at[0] / kPeriod);
+  const auto add = [&](const char* name, const auto& u, PlotStyle style) {
+    panel.series.push_back(
+        mark(name,
+             name,
+             few_digits(std::clamp(u[0] - turns, -kPeriod, kPeriod)),
+             few_digits(std::clamp(u[1], -kHighest, kHighest)),
+             style));
+  };
+  add("nearest solution", wanted, {Hue::ink, Marker::cross});
+  add("answer", at, {Hue::orange, Marker::circle});
+  return panel;
+}
+
+/// What the networks answer for one target of the test set.
+Figure answers(const Evidence& at,
+               const Point& p,
+               const std::vector<MethodLine>& lines) {
+  std::vector<PicturedMethod> methods;
+  for (const MethodLine& line : lines)
+    methods.push_back({line.label, Select{line.method}});
+  return picture(
+      {.title = "What each network answers for one target",
+       .note = "The plane is turned and stretched so that the problem is "
+               "(sin u_1, u_2); u_1 is shifted by whole periods. Answers "
+               "outside of the panel are at its edge; titles have their "
+               "distance to the nearest solution.",
+       .draw = std::bind_front(answer, p)},
+      pictured(at, methods));
+}
+
 Table score_table(const Evidence& at,
                   const Point& p,
                   const std::vector<MethodLine>& lines) {
@@ -187,6 +254,7 @@ Section report(const Point& p, const Evidence& at) {
     section.tables.push_back(gamma_table(at));
     section.figures = {sweeps(at), landscape()};
   }
+  section.figures.insert(section.figures.begin(), answers(at, p, lines));
   LearningCurves curves(at, section);
   curves.metric(lines, 0, "mean distance", "distances", "Distances", "Fig. 5");
   curves.losses(lines, "losses", "Learning curves", "");
