@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "reports/html_parts.h"
+#include "reports/key_figure.h"
 #include "reports/plot.h"
 #include "suite/results/verdict_words.h"
 
@@ -26,6 +27,21 @@ std::string answer_html(const Section& section) {
   return "";
 }
 
+/// One image of a card, which leads to the page.
+std::string image_html(const std::string& folder,
+                       const char* name,
+                       const std::string& shows,
+                       int height) {
+  return fmt::format(
+      "<a href=\"{0}/index.html\" tabindex=\"-1\"><img src=\"{0}/{1}.svg\" "
+      "alt=\"{2}\" width=\"{3}\" height=\"{4}\" loading=\"lazy\"/></a>\n",
+      html(folder),
+      name,
+      html(shows),
+      kCardWidth,
+      height);
+}
+
 }  // namespace
 
 std::string counts_html(const VerdictCounts& counts) {
@@ -47,15 +63,9 @@ std::string card_html(const Section& section,
       "<article class=\"card\">\n<h3><a href=\"{0}/index.html\">{1}</a></h3>\n",
       html(folder),
       html(section.title));
-  if (picture)
-    out += fmt::format(
-        "<a href=\"{0}/index.html\" tabindex=\"-1\"><img "
-        "src=\"{0}/card.svg\" alt=\"{1}\" width=\"{2}\" height=\"{3}\" "
-        "loading=\"lazy\"/></a>\n",
-        html(folder),
-        html(*picture),
-        kCardWidth,
-        kCardHeight);
+  if (picture) out += image_html(folder, "card", *picture, kCardHeight);
+  if (const auto both = before_and_after(section))
+    out += image_html(folder, "card-picture", both->title, kCardHeight / 2);
   if (const std::string answer = answer_html(section); !answer.empty())
     out += "<p class=\"answer\">" + answer + "</p>\n";
   if (const std::string counts = counts_html(tally(section, Origin::paper));

@@ -75,8 +75,9 @@ std::string section_page_html(const Section& section,
                               const Palette& palette,
                               const std::vector<Picture>& pictures = {});
 
-/// A card of the index: picture, if there is one, which shows this; title,
-/// answer, verdicts; the title leads to the page of the experiment.
+/// A card of the index: picture, if there is one, which shows this; one problem
+/// before and after, if it is drawn; title, answer, verdicts. The title leads
+/// to the page of the experiment.
 std::string card_html(const Section& section,
                       const std::string& folder,
                       const std::optional<std::string>& picture);

@@ -81,6 +81,25 @@ std::optional<Figure> key_figure(const Section& section) {
   return figure;
 }
 
+std::optional<Figure> before_and_after(const Section& section) {
+  for (const Figure& figure : section.figures) {
+    if (!figure.picture) continue;
+    const auto start = std::find_if(
+        figure.panels.begin(), figure.panels.end(), [](const Panel& p) {
+          return p.title.starts_with("start");
+        });
+    if (start == figure.panels.end() || &*start == &figure.panels.back())
+      continue;
+    return Figure{.id = "card-picture",
+                  .title = fmt::format(
+                      "{}, then {}", start->title, figure.panels.back().title),
+                  .panels = {*start, figure.panels.back()},
+                  .columns = 2,
+                  .picture = true};
+  }
+  return {};
+}
+
 std::optional<std::string> card_svg(const Section& section,
                                     const Palette& palette,
                                     const std::vector<Picture>& drawn) {

@@ -145,16 +145,27 @@ std::string render_card(const Figure& figure, const Palette& report) {
   Palette palette = palette_of(figure, report);
   std::vector<Key> keys = legend_keys(figure);
   const double legend = lay_out(keys, kCardWidth);
-  const PanelPlot plot(figure.panels.at(0), figure.id, palette);
-  const double panel =
-      plot.height(kCardWidth, std::max(kLeast, kCardHeight - legend));
+  const std::size_t count = figure.panels.size();
+  const double width = kCardWidth / static_cast<double>(count);
+  const double least =
+      count == 1 ? std::max(kLeast, kCardHeight - legend) : kLeast;
+  std::vector<PanelPlot> plots;
+  double highest = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    plots.emplace_back(figure.panels[i],
+                       i == 0 ? figure.id : fmt::format("{}-{}", figure.id, i),
+                       palette);
+    highest = std::max(highest, plots.back().height(width, least));
+  }
   Svg svg(kCardWidth,
-          legend + panel,
+          legend + highest,
           figure.title,
           describe(figure),
           style_sheet());
   for (const Key& key : keys) draw_key(svg, key, palette, 0, 0);
-  plot.draw(svg, {0, legend, kCardWidth, panel});
+  for (std::size_t i = 0; i < count; ++i)
+    plots[i].draw(svg,
+                  {width * static_cast<double>(i), legend, width, highest});
   return std::move(svg).str();
 }
 

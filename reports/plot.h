@@ -17,7 +17,7 @@ namespace physinv {
 /// Methods have the inks of `report`.
 std::string render_svg(const Figure& figure, const Palette& report = {});
 
-/// The first panel alone under its legend, for a narrow place: kCardWidth wide
+/// The panels in a row under their legend, for a narrow place: kCardWidth wide
 /// and kCardHeight high, or higher if the names of its rows need it. Has no
 /// title, which stands beside it as text.
 std::string render_card(const Figure& figure, const Palette& report = {});

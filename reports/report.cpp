@@ -89,6 +89,8 @@ void write_page(Writer& writer,
                section_page_html(section, provenance, palette, pictures));
   if (const auto card = card_svg(section, palette, pictures))
     writer.write(folder / "card.svg", *card);
+  if (const auto both = before_and_after(section))
+    writer.write(folder / "card-picture.svg", render_card(*both, palette));
 }
 
 }  // namespace

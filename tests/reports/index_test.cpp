@@ -163,6 +163,25 @@ TEST(Index, WithoutFiguresACardShowsWhatWasDrawnBefore) {
   EXPECT_FALSE(card_text(one, {}));
 }
 
+TEST(Index, ACardShowsOneProblemBeforeAndAfter) {
+  Figure shots{.id = "picture", .title = "One shot", .picture = true};
+  for (const char* title :
+       {"truth: on target", "start: 0.5 off", "JPO: 0.1 off"})
+    shots.panels.push_back(
+        {.title = title, .series = {{.x = {0, 1}, .y = {0, 1}}}});
+  Section one{.experiment = "jpo/toy", .title = "Toy", .figures = {shots}};
+  const auto both = before_and_after(one);
+  ASSERT_TRUE(both);
+  ASSERT_EQ(both->panels.size(), 2U);
+  EXPECT_EQ(both->title, "start: 0.5 off, then JPO: 0.1 off");
+  const std::string page = index_html({one}, {.one_file = false}, {});
+  EXPECT_NE(page.find("src=\"jpo-toy/card-picture.svg\" alt=\"start: 0.5 off"),
+            page.npos)
+      << page;
+  one.figures.front().panels.pop_back();
+  EXPECT_FALSE(before_and_after(one)) << "nothing after the first guess";
+}
+
 /// What a sentence of the index says of one claim.
 std::string sentence_of(const ClaimResult& claim) {
   Section one{.experiment = "jpo/toy", .title = "Toy", .claims = {claim}};
