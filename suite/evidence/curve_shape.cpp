@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "suite/core/math.h"
+#include "suite/evidence/failures.h"
 #include "suite/evidence/statistics.h"
 
 namespace physinv {
@@ -123,7 +124,7 @@ Quantity ordered_value(const Select& select,
                        std::size_t (*place)(std::size_t count)) {
   return {[=](const Evidence& e) {
             auto values = values_of(sample(e, select, value));
-            if (values.empty()) return missing(select.text() + " too short");
+            if (values.empty()) return missing(why_no_value(e, select));
             for (const double v : values)
               if (std::isnan(v)) return missing("no finite value");
             std::sort(values.begin(), values.end());

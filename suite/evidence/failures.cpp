@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "suite/results/crowded.h"
 #include "suite/results/results.h"
 #include "suite/results/shortened.h"
 
@@ -35,6 +36,17 @@ std::string failed_text(const Evidence& evidence, const Select& select) {
   }
   return failed == 0 ? ""
                      : fmt::format("{} of {} runs{}", failed, runs, kFailed);
+}
+
+std::string why_no_value(const Evidence& evidence, const Select& select) {
+  const auto found = find_runs(evidence, select);
+  if (found.empty()) return select.text() + " not run";
+  const bool crowded =
+      std::all_of(found.begin(), found.end(), [](const Run& run) {
+        return is_crowded(*run.stage);
+      });
+  return select.text() +
+         (crowded ? " crowded" : " too short, or without this value");
 }
 
 std::string failed_part(const std::string& missing) {

@@ -15,6 +15,10 @@ namespace physinv {
 /// did. Cases that were not run are not counted.
 std::string failed_text(const Evidence& evidence, const Select& select);
 
+/// Why no run selected has a value: "adam not run", "adam crowded", "adam too
+/// short, or without this value".
+std::string why_no_value(const Evidence& evidence, const Select& select);
+
 /// What a cell says where that is why a number is missing, else empty.
 std::string failed_part(const std::string& missing);
 

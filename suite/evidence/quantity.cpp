@@ -9,7 +9,6 @@
 #include "suite/evidence/failures.h"
 #include "suite/evidence/statistics.h"
 #include "suite/evidence/training.h"
-#include "suite/results/crowded.h"
 #include "suite/results/published.h"
 #include "suite/store/record.h"
 
@@ -22,16 +21,7 @@ Quantity over_runs(Select select, RunValue value, F statistic) {
   std::vector<Select> runs = {select};
   return {[=](const Evidence& e) {
             const auto samples = sample(e, select, value);
-            if (samples.empty()) {
-              const auto found = find_runs(e, select);
-              const bool crowded =
-                  std::all_of(found.begin(), found.end(), [](const Run& run) {
-                    return is_crowded(*run.stage);
-                  });
-              return missing(select.text() + (found.empty() ? " not run"
-                                              : crowded     ? " crowded"
-                                                            : " too short"));
-            }
+            if (samples.empty()) return missing(why_no_value(e, select));
             return statistic(samples);
           },
           std::move(runs)};

@@ -52,19 +52,22 @@ TEST_F(CurveShapeTest, ScatterIsOfTheLastHalf) {
   EXPECT_DOUBLE_EQ(*of("even", scatter()).value, std::log(2));
   EXPECT_DOUBLE_EQ(*of("flat", scatter()).value, std::log(3) / 2);
   EXPECT_EQ(of("lost", scatter()).value, kInfinite);
-  EXPECT_EQ(of("short", scatter()).missing, "short too short");
+  EXPECT_EQ(of("short", scatter()).missing,
+            "short too short, or without this value");
 }
 
 TEST_F(CurveShapeTest, SettledIsTheMedianOfTheLastThreePoints) {
   EXPECT_EQ(of("even", settled_loss()).value, 2);
-  EXPECT_EQ(of("short", settled_loss()).missing, "short too short");
+  EXPECT_EQ(of("short", settled_loss()).missing,
+            "short too short, or without this value");
 }
 
 TEST_F(CurveShapeTest, ALeadIsAShareOfTheUpdates) {
   // "even" comes to 3, the level of "flat", after 24.15 of 40 updates.
   EXPECT_EQ(lead({"flat"}, {{"even"}})(evidence_).value, 24.0 / 40);
   EXPECT_EQ(lead({"flat"}, {{"even"}}).runs().size(), 2U);
-  EXPECT_EQ(lead({"flat"}, {{"none"}})(evidence_).missing, "flat too short");
+  EXPECT_EQ(lead({"flat"}, {{"none"}})(evidence_).missing,
+            "flat too short, or without this value");
 }
 
 TEST_F(CurveShapeTest, SeveralMethodsOfOneSeedSpread) {
@@ -87,7 +90,7 @@ TEST_F(CurveShapeTest, FourOfFiveSeedsStayOnASide) {
   EXPECT_EQ(most_stay_below({"many"}, last_loss())(evidence_).value, 4);
   EXPECT_EQ(most_stay_above({"many"}, last_loss())(evidence_).value, 2);
   EXPECT_EQ(most_stay_above({"none"}, last_loss())(evidence_).missing,
-            "none too short");
+            "none not run");
 }
 
 }  // namespace

@@ -201,7 +201,8 @@ TEST_F(QuantityTest, WhatIsNotThereHasAReason) {
   const RunValue none = [](const physinv::Run&) {
     return std::optional<double>();
   };
-  EXPECT_EQ(of(median({"a"}, none)).missing, "a too short");
+  EXPECT_EQ(of(median({"a"}, none)).missing,
+            "a too short, or without this value");
   EXPECT_EQ(of(ratio(1, median({"c"}, first_loss()))).missing, "c not run");
   EXPECT_EQ(of(printed("table4/a")).missing, "printed table4/a");
   EXPECT_EQ(of(from_at_least(3, mean({"a"}, first_loss()))).missing,
