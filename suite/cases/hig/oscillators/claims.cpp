@@ -3,13 +3,47 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "suite/cases/hig/oscillators/quantities.h"
+#include "suite/cases/hig/oscillators/oscillators.h"
+#include "suite/evidence/curve_shape.h"
+#include "suite/store/record.h"
 
 namespace physinv::oscillators {
 namespace {
+
+using Ids = std::vector<std::string>;
+
+/// Diverged, or at some point three times as high as at the start.
+bool is_unstable(const Run& run) {
+  return run.stage->stop == Stop::diverged ||
+         *highest_loss()(run) > 3 * *first_loss()(run);
+}
+std::optional<double> unstable(const Run& run) { return is_unstable(run); }
+
+RunValue if_stable(RunValue value) {
+  return [=](const Run& run) {
+    return is_unstable(run) ? std::nullopt : value(run);
+  };
+}
+
+std::vector<Select> runs_of(const Ids& ids) {
+  return each(ids, [](const auto& id) { return Select{id}; });
+}
+
+/// Highest over lowest median, infinite where one diverged.
+Quantity spread_or_unstable(const Ids& ids, const RunValue& value) {
+  const auto all = medians(runs_of(ids), value);
+  const Quantity highest = most(all), spread = spread_ratio(all);
+  return {[=](const Evidence& e) {
+            const Measured m = highest(e);
+            return m.value && !std::isfinite(*m.value) ? m : spread(e);
+          },
+          spread.runs()};
+}
 
 /// P9: at the smallest rate the batch size matters little, at the largest the
 /// loss jumps more.
@@ -54,7 +88,7 @@ Quantity highest_spread_along(const std::vector<Select>& runs, double first) {
 
 void add_claims(Registry& r) {
   ClaimNames names = claim_names();
-  names.set("paper", kPaperClock);
+  names.set("paper", paper_seconds(update_row));
   names.set("unstable", unstable);
   names.add("if_stable", if_stable);
   names.add("rates_and_batches", rates_and_batches);
