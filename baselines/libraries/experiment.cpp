@@ -13,7 +13,6 @@ namespace libraries {
 namespace {
 
 using physinv::Index;
-using physinv::Profile;
 
 /// Of `smoke`, which takes seconds.
 constexpr Index kFew = 8;
@@ -23,27 +22,16 @@ struct Problem {
   Index smoke_size = kFew;  ///< problems at most
 };
 
-/// The rows in which the suite's BFGS runs, for all methods here; of `smoke`
-/// those of few problems.
-std::vector<Profile> profiles(const physinv::Experiment& of,
-                              Index smoke_size,
-                              const std::vector<physinv::Method>& methods) {
-  std::vector<Profile> result;
-  for (const Profile& profile : of.profiles) {
-    Profile mine{.name = profile.name, .rows = {}};
-    for (physinv::Row row : profile.rows) {
-      if (!has(row, "bfgs")) continue;
-      if (profile.name == "smoke") {
-        std::erase_if(row.n, [](Index n) { return n > kFew; });
-        for (Index& n : row.n) n = std::min(n, smoke_size);
-      }
-      if (row.n.empty()) continue;
-      row.methods = ids(methods);
-      mine.rows.push_back(std::move(row));
-    }
-    if (!mine.rows.empty()) result.push_back(std::move(mine));
+/// Of `smoke` the few problems alone; no row if it has none.
+std::vector<physinv::Row> rows(const physinv::Profile& profile,
+                               physinv::Row row,
+                               Index smoke_size) {
+  if (profile.name == "smoke") {
+    std::erase_if(row.n, [](Index n) { return n > kFew; });
+    for (Index& n : row.n) n = std::min(n, smoke_size);
   }
-  return result;
+  if (row.n.empty()) return {};
+  return {std::move(row)};
 }
 
 /// Programs over one folder of experiments lack those of the others.
@@ -53,19 +41,24 @@ void add(const Problem& problem) {
   const auto base = physinv::registry().find(of);
   if (base == nullptr) return;
   const auto all = solvers(*base);
+  auto profiles = profiles_with(
+      *base, "bfgs", [&](const physinv::Profile& profile, physinv::Row row) {
+        row.methods = ids(all);
+        return rows(profile, std::move(row), problem.smoke_size);
+      });
   physinv::register_study(name, of);  // the same problems
-  physinv::register_experiment(
-      {.name = name,
-       .title = base->title + ", other libraries",
-       .citation = base->citation,
-       .problem = base->problem,
-       .setting = base->setting,
-       .profiles = profiles(*base, problem.smoke_size, all),
-       .methods = all,
-       .styles = base->styles,
-       .report = [](const physinv::Evidence& e) {
-         return physinv::Section{.tables = {ends_table(e)}};
-       }});
+  physinv::register_experiment({.name = name,
+                                .title = base->title + ", other libraries",
+                                .citation = base->citation,
+                                .problem = base->problem,
+                                .setting = base->setting,
+                                .profiles = std::move(profiles),
+                                .methods = all,
+                                .styles = base->styles,
+                                .report = [](const physinv::Evidence& e) {
+                                  return physinv::Section{
+                                      .tables = {ends_table(e)}};
+                                }});
 }
 
 const bool kRegistered = [] {

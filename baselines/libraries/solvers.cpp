@@ -1,6 +1,7 @@
 #include "solvers.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "ceres_solvers.h"
 #include "dlib_solvers.h"
@@ -10,6 +11,9 @@
 #include "suite/harness/registry.h"
 
 namespace libraries {
+
+using physinv::Profile;
+using physinv::Row;
 
 std::vector<physinv::Method> solvers(const physinv::Experiment& base) {
   const physinv::Method& bfgs = *physinv::find_method(base, "bfgs");
@@ -34,8 +38,20 @@ std::vector<std::string> ids(const std::vector<physinv::Method>& methods) {
   return all;
 }
 
-bool has(const physinv::Row& row, const char* method) {
-  return std::ranges::find(row.methods, method) != row.methods.end();
+std::vector<Profile> profiles_with(
+    const physinv::Experiment& of,
+    const char* method,
+    const std::function<std::vector<Row>(const Profile&, Row)>& make) {
+  std::vector<Profile> all;
+  for (const Profile& profile : of.profiles) {
+    Profile mine{.name = profile.name, .rows = {}};
+    for (const Row& row : profile.rows) {
+      if (std::ranges::find(row.methods, method) == row.methods.end()) continue;
+      for (Row& one : make(profile, row)) mine.rows.push_back(std::move(one));
+    }
+    if (!mine.rows.empty()) all.push_back(std::move(mine));
+  }
+  return all;
 }
 
 }  // namespace libraries

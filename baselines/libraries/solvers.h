@@ -1,6 +1,7 @@
 /// What the plug-in's experiments have in common.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,12 @@ std::vector<physinv::Method> solvers(const physinv::Experiment& base);
 
 std::vector<std::string> ids(const std::vector<physinv::Method>& methods);
 
-/// Does the row run it?
-bool has(const physinv::Row& row, const char* method);
+/// The experiment's profiles with those rows alone that run a method, each as
+/// what `make` makes of it; without those that then have none.
+std::vector<physinv::Profile> profiles_with(
+    const physinv::Experiment& of,
+    const char* method,
+    const std::function<std::vector<physinv::Row>(const physinv::Profile&,
+                                                  physinv::Row)>& make);
 
 }  // namespace libraries

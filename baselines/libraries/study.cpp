@@ -12,26 +12,14 @@
 namespace libraries {
 namespace {
 
-using physinv::Profile;
-
-/// The rows in which JPO runs, for it alone, and for all solvers on the same
-/// problems, each to its own limit.
-std::vector<Profile> profiles(const physinv::Experiment& of,
-                              const std::vector<physinv::Method>& methods) {
-  std::vector<Profile> result;
-  for (const Profile& profile : of.profiles) {
-    Profile mine{.name = profile.name, .rows = {}};
-    for (physinv::Row row : profile.rows) {
-      if (!has(row, "jpo")) continue;
-      row.methods = {"jpo"};
-      mine.rows.push_back(row);
-      row.methods = ids(methods);
-      row.iterations = 0;
-      mine.rows.push_back(std::move(row));
-    }
-    result.push_back(std::move(mine));
-  }
-  return result;
+/// JPO alone, and all solvers on the same problems, each to its own limit.
+std::vector<physinv::Row> rows(physinv::Row row,
+                               const std::vector<physinv::Method>& methods) {
+  row.methods = {"jpo"};
+  physinv::Row others = row;
+  others.methods = ids(methods);
+  others.iterations = 0;
+  return {std::move(row), std::move(others)};
 }
 
 /// Programs over one folder of experiments lack those of the others.
@@ -41,7 +29,10 @@ void add(const std::string& problem) {
   const auto base = physinv::registry().find(of);
   if (base == nullptr) return;
   auto methods = solvers(*base);
-  auto rows = profiles(*base, methods);
+  auto profiles = profiles_with(
+      *base, "jpo", [&](const physinv::Profile&, physinv::Row row) {
+        return rows(std::move(row), methods);
+      });
   methods.push_back(*physinv::find_method(*base, "jpo"));
   physinv::register_study(name, of);
   physinv::register_experiment(
@@ -50,7 +41,7 @@ void add(const std::string& problem) {
        .citation = {.paper = "jpo", .where = "Tables 4 and 5, Fig. 11"},
        .problem = base->problem,
        .setting = base->setting,
-       .profiles = std::move(rows),
+       .profiles = std::move(profiles),
        .methods = std::move(methods),
        .styles = base->styles,
        .report = [of](const physinv::Evidence& e) {
