@@ -25,25 +25,29 @@ std::vector<Index> some_of(const std::vector<Index>& sizes) {
   return some;
 }
 
-/// Mean losses over simulations per problem, ascending in both.
+/// Mean losses over what was spent: simulations per problem, or seconds.
 struct MeanCurve {
-  std::vector<double> simulations, loss;
+  std::vector<double> spent, loss;
   /// At the last point up to there; empty before the first.
   std::optional<double> at(double x) const {
-    const auto after =
-        std::upper_bound(simulations.begin(), simulations.end(), x);
-    if (after == simulations.begin()) return {};
-    return loss[static_cast<std::size_t>(after - simulations.begin()) - 1];
+    const auto after = std::upper_bound(spent.begin(), spent.end(), x);
+    if (after == spent.begin()) return {};
+    return loss[static_cast<std::size_t>(after - spent.begin()) - 1];
   }
 };
+/// Of each seed, and what methods are called.
+using Curves = std::vector<std::pair<std::string, std::vector<MeanCurve>>>;
 
-MeanCurve curve_of(const ConvergenceHistory& history, Index n) {
+MeanCurve curve_of(const ConvergenceHistory& history, Index n, bool seconds) {
   MeanCurve curve;
   for (std::size_t k = 0; k < history.loss.size(); ++k) {
     // A run that is judged by a mean is one problem.
     const Index problems = history.loss[k].size();
     const double share = problems == 1 ? 1 : static_cast<double>(n);
-    curve.simulations.push_back(std::max(history.simulations[k] / share, 1.0));
+    // Logarithmic axes have no place for the start.
+    curve.spent.push_back(seconds
+                              ? std::max(history.seconds[k], 1e-9)
+                              : std::max(history.simulations[k] / share, 1.0));
     curve.loss.push_back(history.loss[k].mean());
   }
   return curve;
@@ -52,7 +56,7 @@ MeanCurve curve_of(const ConvergenceHistory& history, Index n) {
 Series series_of(const std::vector<MeanCurve>& seeds) {
   std::set<double> points;
   for (const MeanCurve& curve : seeds)
-    points.insert(curve.simulations.begin(), curve.simulations.end());
+    points.insert(curve.spent.begin(), curve.spent.end());
   Series s;
   for (const double x : points) {
     std::vector<double> values;
@@ -86,6 +90,54 @@ std::string title_of(const std::string& method, const ProfileOptions& options) {
   return title == options.method_titles.end() ? method : title->second;
 }
 
+/// Of the methods that came to losses at this n.
+Curves curves_of(const Results& results,
+                 const std::string& experiment,
+                 Index n,
+                 bool seconds) {
+  Curves all;
+  for (const std::string& method : drawn_methods(results, experiment)) {
+    std::vector<MeanCurve> seeds;
+    for (const auto seed : results.seeds(experiment)) {
+      const auto* found = results.find_case(experiment, method, n, seed);
+      const auto history = found ? history_of(*found) : std::nullopt;
+      if (history && !history->loss.empty())
+        seeds.push_back(curve_of(*history, n, seconds));
+    }
+    if (!seeds.empty()) all.emplace_back(method, std::move(seeds));
+  }
+  return all;
+}
+
+/// Problems of a formula count no simulations.
+bool simulate(const Curves& all) {
+  return std::ranges::any_of(all, [](const auto& method) {
+    return std::ranges::any_of(method.second, [](const MeanCurve& curve) {
+      return std::ranges::max(curve.spent) > 1;
+    });
+  });
+}
+
+Panel curves_panel(const Results& results,
+                   const std::string& experiment,
+                   Index n,
+                   const ProfileOptions& options) {
+  Curves all = curves_of(results, experiment, n, false);
+  const bool simulations = simulate(all);
+  if (!simulations) all = curves_of(results, experiment, n, true);
+  Panel panel{.title = fmt::format("n = {}", n),
+              .x_label = simulations ? "simulations per problem" : "seconds",
+              .y_label = "mean loss",
+              .x_log = true,
+              .y_log = true};
+  for (const auto& [method, seeds] : all) {
+    Series s = series_of(seeds);
+    s.label = title_of(method, options), s.method = method;
+    if (!s.x.empty()) panel.series.push_back(std::move(s));
+  }
+  return panel;
+}
+
 }  // namespace
 
 Figure solved_by_budget(const CommonRuns& common,
@@ -102,10 +154,15 @@ Figure solved_by_budget(const CommonRuns& common,
   for (const Index n : some_of(common.sizes)) {
     const TargetCosts costs = target_costs(common, kSolvedTolerance, n);
     if (costs.problems == 0) continue;
-    Panel panel =
-        cost_panel(costs.simulations, costs.methods, options.method_titles);
+    const bool simulations =
+        std::ranges::any_of(costs.spent_simulations, [](const Costs& spent) {
+          return std::ranges::any_of(spent, [](double s) { return s > 1; });
+        });
+    Panel panel = cost_panel(simulations ? costs.simulations : costs.seconds,
+                             costs.methods,
+                             options.method_titles);
     panel.title = fmt::format("n = {}", n);
-    panel.x_label = "simulations per problem";
+    panel.x_label = simulations ? "simulations per problem" : "seconds";
     panel.y_label = "share of problems solved";
     figure.panels.push_back(std::move(panel));
   }
@@ -120,29 +177,10 @@ Figure learning_curves(const Results& results,
                 .note =
                     "Mean over problems, median over seeds, band: 10 % and 90 "
                     "% quantiles. All stages of a method, also refinement; "
-                    "simulations include gradients. Where a method learns from "
-                    "samples before its first simulation, its curve begins at "
-                    "1."};
-  const auto methods = drawn_methods(results, experiment);
+                    "simulations include gradients. Seconds where nothing is "
+                    "simulated."};
   for (const Index n : some_of(results.sizes(experiment))) {
-    Panel panel{.title = fmt::format("n = {}", n),
-                .x_label = "simulations per problem",
-                .y_label = "mean loss",
-                .x_log = true,
-                .y_log = true};
-    for (const std::string& method : methods) {
-      std::vector<MeanCurve> seeds;
-      for (const auto seed : results.seeds(experiment)) {
-        const auto* found = results.find_case(experiment, method, n, seed);
-        const auto history = found ? history_of(*found) : std::nullopt;
-        if (history && !history->loss.empty())
-          seeds.push_back(curve_of(*history, n));
-      }
-      if (seeds.empty()) continue;
-      Series s = series_of(seeds);
-      s.label = title_of(method, options), s.method = method;
-      if (!s.x.empty()) panel.series.push_back(std::move(s));
-    }
+    Panel panel = curves_panel(results, experiment, n, options);
     if (!panel.series.empty()) figure.panels.push_back(std::move(panel));
   }
   return figure;

@@ -13,12 +13,12 @@
 namespace physinv {
 
 /// Share of problems solved to tau = 1e-5 (performance_profiles.h) after a
-/// number of simulations; a panel for each of up to four n. No panels if no two
-/// methods can be compared.
+/// number of simulations, of seconds where nothing is simulated; a panel for
+/// each of up to four n. No panels if no two methods can be compared.
 Figure solved_by_budget(const CommonRuns& common,
                         const ProfileOptions& options);
 
-/// Mean losses of whole chains over simulations per problem, median and 10 %
+/// Mean losses of whole chains over the same, median and 10 %
 /// and 90 % quantiles over seeds; a panel for each of up to four n, a curve for
 /// each method with runs. Of more than 24 methods, those in Python and those
 /// that end lowest.

@@ -64,5 +64,18 @@ TEST(BudgetFigures, EveryMethodHasACurve) {
   EXPECT_DOUBLE_EQ(mine.y.back(), 0.5) << "though it has one seed only";
 }
 
+TEST(BudgetFigures, SecondsWhereNothingIsSimulated) {
+  CaseRecord fast = solved_case("a", 2, 0, {0, 0}),
+             slow = solved_case("b", 2, 0, {0, 0.5});
+  for (CaseRecord* c : {&fast, &slow})
+    c->stages.front().curve.evaluations = {0, 0};
+  const Results results({fast, slow});
+  const Figure curves = learning_curves(results, "toy", {});
+  EXPECT_EQ(curves.panels.at(0).x_label, "seconds");
+  EXPECT_EQ(curves.panels.at(0).series.at(0).x.back(), 2) << "its whole time";
+  const Figure solved = solved_by_budget(common_runs(results, "toy"), {});
+  EXPECT_EQ(solved.panels.at(0).x_label, "seconds");
+}
+
 }  // namespace
 }  // namespace physinv
