@@ -44,9 +44,10 @@ MeanCurve curve_of(const ConvergenceHistory& history, Index n, bool seconds) {
     // A run that is judged by a mean is one problem.
     const Index problems = history.loss[k].size();
     const double share = problems == 1 ? 1 : static_cast<double>(n);
-    // Logarithmic axes have no place for the start.
+    // A logarithmic axis has no place for the start.
+    if (seconds && !(history.seconds[k] > 0)) continue;
     curve.spent.push_back(seconds
-                              ? std::max(history.seconds[k], 1e-9)
+                              ? history.seconds[k]
                               : std::max(history.simulations[k] / share, 1.0));
     curve.loss.push_back(history.loss[k].mean());
   }
@@ -177,8 +178,9 @@ Figure learning_curves(const Results& results,
                 .note =
                     "Mean over problems, median over seeds, band: 10 % and 90 "
                     "% quantiles. All stages of a method, also refinement; "
-                    "simulations include gradients. Seconds where nothing is "
-                    "simulated."};
+                    "simulations include gradients. Where a method learns from "
+                    "samples before its first simulation, its curve begins at "
+                    "1. Seconds where nothing is simulated."};
   for (const Index n : some_of(results.sizes(experiment))) {
     Panel panel = curves_panel(results, experiment, n, options);
     if (!panel.series.empty()) figure.panels.push_back(std::move(panel));

@@ -73,6 +73,8 @@ TEST(BudgetFigures, SecondsWhereNothingIsSimulated) {
   const Figure curves = learning_curves(results, "toy", {});
   EXPECT_EQ(curves.panels.at(0).x_label, "seconds");
   EXPECT_EQ(curves.panels.at(0).series.at(0).x.back(), 2) << "its whole time";
+  EXPECT_GE(curves.panels.at(0).series.at(0).x.front(), 1)
+      << "a logarithmic axis has no place for 0 s";
   const Figure solved = solved_by_budget(common_runs(results, "toy"), {});
   EXPECT_EQ(solved.panels.at(0).x_label, "seconds");
 }
