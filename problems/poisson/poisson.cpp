@@ -29,15 +29,10 @@ Batch<double> sines(Index n) {
          });
 }
 
-/// `n` up to the next multiple of a tile.
-Index padded(Index n) {
-  return (n + linalg::kTileColumns - 1) / linalg::kTileColumns *
-         linalg::kTileColumns;
-}
-
 /// Of the same columns, with further rows that hold `fill`.
 Batch<double> with_padded_rows(const Batch<double>& a, double fill) {
-  Batch<double> out = Batch<double>::Constant(padded(a.rows()), a.cols(), fill);
+  Batch<double> out = Batch<double>::Constant(
+      round_up(a.rows(), linalg::kTileColumns), a.cols(), fill);
   out.topRows(a.rows()) = a;
   return out;
 }

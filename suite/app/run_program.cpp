@@ -5,12 +5,11 @@
 namespace physinv {
 
 const Program& program() {
-  static const Program bench{
-      .name = "physinv-bench",
-      .verbs = {{"run", "[FILTER]", "run cases (the default verb)", run_verb}},
-      .examples = {},
-      .environment = {},
-      .conclude = conclude};
+  static const Program bench{.name = "physinv-bench",
+                             .verbs = {kRunVerb},
+                             .examples = {},
+                             .environment = {},
+                             .conclude = conclude};
   return bench;
 }
 

@@ -8,7 +8,7 @@ namespace {
 
 std::vector<Verb> verbs() {
   return {
-      {"run", "[FILTER]", "run cases (the default verb)", run_verb},
+      kRunVerb,
       {"list", "[FILTER]", "list cases, stages and estimated work", list_verb},
       {"plan", "[FILTER]", "predict time, memory and disk space", plan_verb},
       {"report",

@@ -52,4 +52,8 @@ ExitCode kernels_verb(const Arguments& arguments);
 ExitCode baseline_verb(const Arguments& arguments);
 ExitCode gate_verb(const Arguments& arguments);
 
+/// The verb that every program has.
+inline constexpr Verb kRunVerb{
+    "run", "[FILTER]", "run cases (the default verb)", run_verb};
+
 }  // namespace physinv

@@ -97,13 +97,11 @@ bool crosses(const Compared& row, std::size_t s, double solved) {
   });
 }
 
-/// "solved 52 → 61 %"
+/// "solved 52 → 61 %", where both sides have examples.
 std::string solved_text(const Reading& a, const Reading& b) {
-  const auto percent = [](const Reading& r) {
-    return 100 * static_cast<double>(r.solved) /
-           static_cast<double>(std::max(r.examples, Index{1}));
-  };
-  return fmt::format("solved {:.0f} → {:.0f} %", percent(a), percent(b));
+  return fmt::format("solved {:.0f} → {:.0f} %",
+                     percent_of(a.solved, a.examples),
+                     percent_of(b.solved, b.examples));
 }
 
 /// What sets a stage of a group apart from the others, and how it fared.
@@ -324,9 +322,11 @@ Table changes_table(const Comparison& c, std::size_t most) {
 }
 
 std::string unchanged_text(const Comparison& c) {
-  return fmt::format("{} of {} rows unchanged",
-                     c.rows.size() - changed(c).rows.size(),
-                     c.rows.size());
+  const auto unchanged =
+      std::count_if(c.rows.begin(), c.rows.end(), [&](const Compared& row) {
+        return row.unchanged(c.thresholds);
+      });
+  return fmt::format("{} of {} rows unchanged", unchanged, c.rows.size());
 }
 
 Table folded_table(const Comparison& c, std::size_t most) {

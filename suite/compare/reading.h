@@ -60,6 +60,10 @@ struct Reading {
   double passes() const;  ///< of networks
 };
 
+inline double percent_of(Index part, Index whole) {
+  return 100 * static_cast<double>(part) / static_cast<double>(whole);
+}
+
 /// From where a difference counts.
 struct Thresholds {
   double factor = 1.5;  ///< a ratio of times within it is no change

@@ -74,9 +74,7 @@ const SideRank* rank_of(const std::vector<SideRank>& ranks,
 /// "52 %"; of losses that are not stored nothing is known.
 std::string share_text(Index solved, Index examples) {
   return examples == 0 ? "–"
-                       : fmt::format("{:.0f} %",
-                                     100 * static_cast<double>(solved) /
-                                         static_cast<double>(examples));
+                       : fmt::format("{:.0f} %", percent_of(solved, examples));
 }
 
 /// "on 57 % of 336 problems, p = 0.001"

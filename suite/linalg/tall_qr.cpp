@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "suite/core/check.h"
+#include "suite/core/simd/finite.h"
 #include "suite/linalg/householder.h"
 
 namespace physinv::linalg {
@@ -99,13 +100,9 @@ void TallColumns::open(Index rows, Index columns) {
 }
 
 bool TallColumns::finite() const {
-  // 0 x is 0 for what is finite, and NaN for all else.
-  Pack8 zero{};
-  const Index end = round_up(rows_, kWidth);
   for (Index j = 0; j < columns_; ++j)
-    for (Index i = 0; i < end; i += kWidth)
-      zero = fma_lanes(load(column(j) + i), Pack8{}, zero);
-  return sum_of(zero) == 0;
+    if (!all_finite(column(j), rows_)) return false;
+  return true;
 }
 
 namespace {

@@ -2,7 +2,7 @@
 """method_test.py WORK: methods written in Python, as cases of a campaign:
 recorded, reused, verified, reported; what fails, fails alone."""
 
-import importlib.util
+import functools
 import json
 import os
 import shutil
@@ -19,8 +19,10 @@ except ImportError:
     sys.exit(77)
 
 import physinv
+import source_file
 
 WORK = sys.argv[1]
+define = functools.partial(source_file.define, WORK + "/methods.py")
 WORK_FILE = sys.stdout
 FILTER = "^jpo/robotic-arm/(bfgs|py-.*)/"
 METHODS = '''
@@ -171,15 +173,6 @@ def keep(run):
     while run.proceed(run.start):
         pass
     return run.start
-
-
-def define(text):
-    """The methods of a file of its own."""
-    path = WORK + "/methods.py"
-    with open(path, "w") as f:
-        f.write(text)
-    spec = importlib.util.spec_from_file_location("methods", path)
-    spec.loader.exec_module(importlib.util.module_from_spec(spec))
 
 
 def run(**flags):

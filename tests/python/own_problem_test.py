@@ -4,6 +4,7 @@ reused, verified, reported; what a problem lacks is skipped, what it raises ends
 case with a reason, and conformance says what is wrong."""
 
 import contextlib
+import functools
 import importlib.util
 import io
 import os
@@ -19,8 +20,10 @@ except ImportError:
     sys.exit(77)
 
 import physinv
+import source_file
 
 WORK = sys.argv[1]
+define = functools.partial(source_file.define, WORK + "/problems.py")
 TIMES = np.linspace(0.1, 2, 6)
 SOLVERS = "(bfgs|lbfgsb|gd)"
 
@@ -87,15 +90,6 @@ class Full(Plain):
             x = np.stack([y[:, 0] * np.exp(rate * given[:, 0] * TIMES[0]),
                           rate], 1)
         return np.where(np.isfinite(x).all(1, keepdims=True), x, guess)
-
-
-def define(text):
-    """The problems of a file of its own."""
-    path = WORK + "/problems.py"
-    with open(path, "w") as f:
-        f.write(text)
-    spec = importlib.util.spec_from_file_location("problems", path)
-    spec.loader.exec_module(importlib.util.module_from_spec(spec))
 
 
 def run(pattern, out, profile="smoke", **flags):

@@ -24,13 +24,18 @@ TEST(Rates, ByStageThenOverall) {
   EXPECT_DOUBLE_EQ(rates.seconds("other", 200), 11);
 }
 
-TEST(Progress, EstimatesFromOperations) {
+/// Of one problem and of nine.
+std::vector<Case> two_cases() {
   Registry registry;
   registry.add(fake::experiment());
   Overrides o;
   o.methods = {"descend"};
   o.n = {1, 9};
-  const auto cases = registry.expand("smoke", o);
+  return registry.expand("smoke", o);
+}
+
+TEST(Progress, EstimatesFromOperations) {
+  const auto cases = two_cases();
   ASSERT_EQ(cases.size(), 2u);
   std::FILE* sink = std::fopen("/dev/null", "w");
   Progress progress({.stream = sink}, cases, 1);
@@ -46,12 +51,7 @@ TEST(Progress, EstimatesFromOperations) {
 }
 
 TEST(Progress, LinesHaveHeadsOnce) {
-  Registry registry;
-  registry.add(fake::experiment());
-  Overrides o;
-  o.methods = {"descend"};
-  o.n = {1, 9};
-  const auto cases = registry.expand("smoke", o);
+  const auto cases = two_cases();
   char* text = nullptr;
   std::size_t size = 0;
   std::FILE* stream = open_memstream(&text, &size);
