@@ -102,7 +102,7 @@ configure() {
   fi
   say "configuring ${tree#"$root/"}"
   local compiler=()
-  ! on_arm || compiler=(-DCMAKE_CXX_COMPILER=clang++ -DPHYSINV_PRECOMPILE=OFF)
+  ! on_arm || compiler=(-DCMAKE_CXX_COMPILER=clang++)
   quietly "$tree/configure.log" cmake -S "$root" --preset "${tree##*/}" \
     -DPHYSINV_TESTS="$tests" "${compiler[@]}" || build_failed
   printf '%s\n' "$tests $root" >"$tree/.configured"
