@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <utility>
 
 #include "reports/joined_tables.h"
@@ -16,6 +15,7 @@
 #include "suite/evidence/budget_figures.h"
 #include "suite/evidence/convergence_history.h"
 #include "suite/evidence/failures.h"
+#include "suite/evidence/method_titles.h"
 #include "suite/evidence/performance_profiles.h"
 #include "suite/evidence/standings.h"
 #include "suite/evidence/work_precision.h"
@@ -117,30 +117,11 @@ std::string profiles_text(const Results& results) {
   return stages.size() > 1 ? text : "";
 }
 
-/// "HIG, b = 16" names a method, "b = 16" one of its settings.
-bool is_name(const std::string& label) {
-  const auto equals = label.find('=');
-  if (equals == std::string::npos) return !label.empty();
-  const auto word = label.find_first_of(" ,");
-  return word < equals && label.find_first_not_of(' ', word) != equals;
-}
-
-/// A method that its experiment's own figures call by one name, and no other
-/// by it, has that name everywhere.
-void learn_titles(const Experiment& e, Section& section) {
-  std::map<std::string, std::set<std::string>> labels;
-  for (const Figure& figure : section.figures)
-    for (const Panel& panel : figure.panels)
-      for (const Series& s : panel.series)
-        if (!s.dashed && is_name(s.label) &&
-            find_method(e, s.method) != nullptr)
-          labels[s.method].insert(s.label);
-  std::map<std::string, int> called;
-  for (const auto& [method, names] : labels)
-    for (const auto& name : names) ++called[name];
-  for (const auto& [method, names] : labels)
-    if (names.size() == 1 && called[*names.begin()] == 1)
-      section.method_titles.try_emplace(method, *names.begin());
+/// Methods that the experiment's report does not name have the titles of the
+/// literature.
+void add_titles(const Results& results, Section& section) {
+  for (const std::string& method : results.methods(section.experiment))
+    section.method_titles.try_emplace(method, method_title(method));
 }
 
 /// What every experiment shows of all its methods.
@@ -214,7 +195,6 @@ std::vector<Section> sections_of(const Results& results,
   const auto printed = curves_of(published);
   const auto work = work_of(results);
   std::vector<std::pair<const Experiment*, std::size_t>> own;
-  std::map<std::string, std::string> titles;
   for (const auto& e : registry().experiments()) {
     if (results.sizes(e->name).empty()) continue;
     own.emplace_back(e.get(), sections.size());
@@ -224,14 +204,11 @@ std::vector<Section> sections_of(const Results& results,
     if (Table failed = failed_runs(results, e->name); !failed.rows.empty())
       sections.back().tables.insert(sections.back().tables.begin(),
                                     std::move(failed));
-    learn_titles(*e, sections.back());
+    add_titles(results, sections.back());
     draw_printed(printed, sections.back());
-    titles.insert(sections.back().method_titles.begin(),
-                  sections.back().method_titles.end());
   }
   for (const auto& [e, at] : own) {
     Section& section = sections[at];
-    section.method_titles.insert(titles.begin(), titles.end());
     name_rows(section);
     if (!only_diagnoses(*e)) compare_methods(results, e->name, section);
     apply(e->styles, section.figures);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -42,6 +43,14 @@ struct MethodLine {
   std::optional<double> paper_update = {};  ///< seconds by the paper
   std::string key = {};  ///< lines of one look alike; empty: the method
 };
+
+/// a, then the lines of b whose methods a lacks.
+std::vector<MethodLine> joined(std::vector<MethodLine> a,
+                               const std::vector<MethodLine>& b);
+
+/// What an experiment's tables and figures call its methods.
+std::map<std::string, std::string> titles_of(
+    const std::vector<MethodLine>& lines);
 
 /// What a problem makes of an answer.
 Vector<double> observed(const Problem<double>& problem, const Answered& answer);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <set>
 #include <string>
 #include <tuple>
@@ -56,6 +57,23 @@ double end_loss(const StageRecord& s) {
 }
 
 }  // namespace
+
+std::vector<MethodLine> joined(std::vector<MethodLine> a,
+                               const std::vector<MethodLine>& b) {
+  for (const MethodLine& line : b) {
+    const auto same = [&](const auto& l) { return l.method == line.method; };
+    if (std::none_of(a.begin(), a.end(), same)) a.push_back(line);
+  }
+  return a;
+}
+
+std::map<std::string, std::string> titles_of(
+    const std::vector<MethodLine>& lines) {
+  std::map<std::string, std::string> titles;
+  for (const MethodLine& line : lines)
+    titles.try_emplace(line.method, line.label);
+  return titles;
+}
 
 Table loss_table(const Evidence& e, const std::vector<MethodLine>& lines) {
   Table table{.id = "results",

@@ -221,7 +221,7 @@ void add_curves(LearningCurves& curves, const Evidence& e) {
 }
 
 Section report(const Evidence& e) {
-  Section section{.tables = tables(e)};
+  Section section{.tables = tables(e), .method_titles = titles_of(rules(e))};
   LearningCurves curves(e, section);
   section.figures.push_back(evolution_figure(
       e, {{"hig", "HIG"}, {"adam", "Adam"}, {"gn", "Gauss-Newton"}}));

@@ -171,15 +171,20 @@ Figure fields(const Evidence& e, const std::vector<MethodLine>& lines) {
   return figure;
 }
 
-std::vector<Table> tables(const Evidence& e) {
+std::vector<MethodLine> all_lines(const Evidence& e) {
   std::vector<MethodLine> all = learning(e);
   for (const auto& group : {turns(e), kReturns})
     for (const MethodLine& line : group)
       if (line.method != "adam" && line.method != "adam-adam" &&
           line.method != "long-adam-adam")
         all.push_back(line);
+  return all;
+}
+
+std::vector<Table> tables(const Evidence& e,
+                          const std::vector<MethodLine>& lines) {
   return {
-      loss_table(e, all),
+      loss_table(e, lines),
       cost_table(
           e,
           {cost_line(kName, "adam", 64, "adam", "Adam, b = 64"),
@@ -228,7 +233,9 @@ void add_curves(LearningCurves& curves, const Evidence& e) {
 }
 
 Section report(const Evidence& e) {
-  Section section{.tables = tables(e)};
+  const auto lines = all_lines(e);
+  Section section{.tables = tables(e, lines),
+                  .method_titles = titles_of(lines)};
   LearningCurves curves(e, section);
   section.figures.push_back(
       fields(e,

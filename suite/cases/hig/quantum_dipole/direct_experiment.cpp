@@ -31,7 +31,8 @@ const std::vector<MethodLine> kLines = {
     {"hig-f32-tau7", "HIG, float, tau=1e-7"}};
 
 Section report(const Evidence& e) {
-  Section section{.tables = {loss_table(e, kLines)}};
+  Section section{.tables = {loss_table(e, kLines)},
+                  .method_titles = titles_of(kLines)};
   LearningCurves curves(e, section);
   curves.losses(kLines, "loss", "Loss, evaluated in double", "Fig. 4b");
   curves.metric(kLines,

@@ -147,15 +147,6 @@ Table tau_table(const Evidence& evidence) {
 constexpr const char* kAdamGrid = "Adam: batch size and rate";
 constexpr const char* kHigGrid = "HIG: batch size, rate and truncation";
 
-std::vector<MethodLine> joined(std::vector<MethodLine> a,
-                               const std::vector<MethodLine>& b) {
-  for (const MethodLine& line : b) {
-    const auto same = [&](const auto& l) { return l.method == line.method; };
-    if (std::none_of(a.begin(), a.end(), same)) a.push_back(line);
-  }
-  return a;
-}
-
 /// |psi(t, x)|^2 under the control that a network chose.
 Panel probability(const Answered& answer, std::string title) {
   constexpr Index kFrame = 8;
@@ -246,11 +237,13 @@ Figure transitions(const Evidence& e, const std::vector<MethodLine>& lines) {
 Section dense_report(const Evidence& e) {
   const auto adam = lines_of(dense_adam(), e), hig = lines_of(dense_hig(), e),
              by_rate = rates(e), single = lines_of(in_float());
+  const auto named = joined(joined(kMain, kRules), joined(by_rate, single));
   const auto all = joined(joined(joined(kMain, kRules), by_rate),
                           joined(joined(hig, adam), single));
   Section section{.tables = {loss_table(e, all),
                              tau_table(e),
-                             cost_table(e, costs(), "Table 5")}};
+                             cost_table(e, costs(), "Table 5")},
+                  .method_titles = titles_of(named)};
   LearningCurves curves(e, section);
   section.figures.push_back(transitions(e, {{"hig", "HIG"}, {"adam", "Adam"}}));
   curves.losses(

@@ -147,10 +147,10 @@ Table course_table(const Evidence& evidence,
 }
 
 Section report(const Evidence& evidence) {
-  auto all = kLines;
-  all.insert(all.end(), kVariants.begin(), kVariants.end());
+  const auto all = joined(kLines, kVariants);
   Section section{
-      .tables = {loss_table(evidence, all), course_table(evidence, all)}};
+      .tables = {loss_table(evidence, all), course_table(evidence, all)},
+      .method_titles = titles_of(all)};
   LearningCurves curves(evidence, section);
   curves.losses(kLines, "fig1-loss", "Learning curves", "Fig. 1, left");
   curves.metric(kLines,

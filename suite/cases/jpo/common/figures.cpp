@@ -5,6 +5,7 @@
 
 #include "suite/cases/jpo/common/report.h"
 #include "suite/evidence/guests.h"
+#include "suite/evidence/method_titles.h"
 #include "suite/evidence/series.h"
 #include "suite/evidence/statistics.h"
 #include "suite/harness/networks.h"

@@ -3,22 +3,13 @@
 #include <algorithm>
 
 #include "suite/evidence/guests.h"
+#include "suite/evidence/method_titles.h"
 #include "suite/harness/registry.h"
 
 namespace physinv {
 
 std::string JpoReport::title() const {
   return registry().find(evidence_.experiment)->title;
-}
-
-std::string method_title(const std::string& method) {
-  if (method == "bfgs") return "BFGS";
-  if (method == "gd") return "Gradient descent";
-  if (method == "jpo") return "JPO";
-  if (method == "jpo-long") return "JPO, twice as long";
-  if (method == "supervised") return "Supervised";
-  if (method == "na") return "Neural adjoint";
-  return method;
 }
 
 std::vector<std::string> JpoReport::with_bfgs() const {
@@ -78,9 +69,6 @@ Figure curves_with_descent(JpoReportOptions options,
 
 Section jpo_section(const JpoReportOptions& options, const Evidence& e) {
   const JpoReport report(options, e);
-  std::map<std::string, std::string> titles;
-  for (const auto& method : e.results.methods(e.experiment))
-    titles[method] = method_title(method);
   Section section{.tables = {report.seconds(),
                              report.fit_share(),
                              report.better_equal(false),
@@ -91,8 +79,7 @@ Section jpo_section(const JpoReportOptions& options, const Evidence& e) {
                               report.curves(),
                               report.trajectories(),
                               report.weight_change()},
-                  .claims = {},
-                  .method_titles = std::move(titles)};
+                  .claims = {}};
   if (options.picture.draw)
     section.figures.insert(section.figures.begin(), report.picture());
   return section;

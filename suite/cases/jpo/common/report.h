@@ -51,9 +51,6 @@ inline const PlotStyles kJpoStyles = {
     {"gd", {Hue::purple, Marker::down}},
     {"truth", {Hue::ink, Marker::cross}}};
 
-/// Name for readers: jpo -> JPO, na -> Neural adjoint.
-std::string method_title(const std::string& method);
-
 class JpoReport {
  public:
   /// Of the experiment that asks; both have to outlive it.

@@ -5,6 +5,7 @@
 #include "suite/cases/jpo/common/report.h"
 #include "suite/evidence/failures.h"
 #include "suite/evidence/guests.h"
+#include "suite/evidence/method_titles.h"
 #include "suite/evidence/statistics.h"
 
 namespace physinv {

@@ -11,6 +11,7 @@
 #include "suite/core/any_problem.h"
 #include "suite/core/math.h"
 #include "suite/evidence/field_panel.h"
+#include "suite/evidence/method_titles.h"
 #include "suite/harness/networks.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/study.h"

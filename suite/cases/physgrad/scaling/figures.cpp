@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,6 +30,13 @@ const Line kGd{"gd", "gradient descent", {Hue::blue, Marker::circle}},
     kSlowGd{"gd_small", "gradient descent, 0.005", {Hue::teal, Marker::circle}},
     kSlowPg{
         "pg_small", "inverse simulator, 0.05", {Hue::green, Marker::diamond}};
+
+std::map<std::string, std::string> titles() {
+  std::map<std::string, std::string> all;
+  for (const Line& line : {kGd, kNewton, kIg, kPg, kSlowGd, kSlowPg})
+    all[line.method] = line.label;
+  return all;
+}
 
 /// The path of a finished run.
 std::optional<Path> path_of(const Evidence& e,
@@ -154,7 +162,9 @@ Table times(const Evidence& e) {
 }
 
 Section scaling_page(const Evidence& e) {
-  return {.tables = {times(e)}, .figures = {landscapes(e), trajectories(e)}};
+  return {.tables = {times(e)},
+          .figures = {landscapes(e), trajectories(e)},
+          .method_titles = titles()};
 }
 
 // ---- y = (x1, x2^2) ---------------------------------------------------------
@@ -247,7 +257,8 @@ Table ends(const Evidence& e) {
 
 Section comparison_page(const Evidence& e) {
   return {.tables = {ends(e), times(e)},
-          .figures = {both_spaces(e), rates(e), rules(e)}};
+          .figures = {both_spaces(e), rates(e), rules(e)},
+          .method_titles = titles()};
 }
 
 }  // namespace

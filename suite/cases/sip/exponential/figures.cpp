@@ -54,7 +54,8 @@ Figure predictions(const Evidence& e) {
 
 Section report(const Evidence& e) {
   Section section{.tables = {loss_table(e, kLines)},
-                  .figures = {predictions(e)}};
+                  .figures = {predictions(e)},
+                  .method_titles = titles_of(kLines)};
   LearningCurves curves(e, section);
   curves.metric(kLines, kMean, "mean |x - x*|", "errors", "Errors of x", "");
   curves.losses(kLines, "losses", "Learning curves", "");

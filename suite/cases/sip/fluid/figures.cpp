@@ -106,7 +106,8 @@ Figure film(const std::vector<Said>& all) {
 }
 
 Section report(const Evidence& e) {
-  Section section{.tables = {loss_table(e, kLines)}};
+  Section section{.tables = {loss_table(e, kLines)},
+                  .method_titles = titles_of(kLines)};
   LearningCurves curves(e, section);
   curves.metric(
       kLines, kError, "|x - x*|", "errors", "Errors of v0", "Fig. 14");

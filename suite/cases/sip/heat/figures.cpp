@@ -221,7 +221,8 @@ Section report(const Evidence& e) {
       .tables = {errors(e),
                  loss_table(e, networks()),
                  study(e, "fig11", kByRate, "Fig. 11", rate_points()),
-                 study(e, "fig12", kBySet, "Fig. 12", set_points())}};
+                 study(e, "fig12", kBySet, "Fig. 12", set_points())},
+      .method_titles = titles_of(joined(networks(), kDirect))};
   std::erase_if(section.tables, [](const Table& t) { return t.rows.empty(); });
   LearningCurves curves(e, section);
   curves.metric(
@@ -246,7 +247,8 @@ Section operator_page(const Evidence& e) {
       {"fno-long-b8-lr2", "FNO, batch 8, rate 1e-2, longer", Hue::brown},
       {"fno-long-b8", "FNO, batch 8, longer", Hue::pink},
       {"fno-long-b8-lr4", "FNO, batch 8, rate 1e-4, longer", Hue::red}};
-  Section section{.tables = {loss_table(e, lines)}};
+  Section section{.tables = {loss_table(e, lines)},
+                  .method_titles = titles_of(lines)};
   LearningCurves curves(e, section);
   curves.metric(
       lines, kError, "sum |x - x*|", "fig10", "Errors of x", "Fig. 10");

@@ -30,7 +30,8 @@ const std::vector<MethodLine> kLines = {
     {"fno-long-b8", "FNO, batch 8, longer", Hue::pink}};
 
 Section report(const Domain& domain, const Evidence& e) {
-  Section section{.tables = {loss_table(e, kLines)}};
+  Section section{.tables = {loss_table(e, kLines)},
+                  .method_titles = titles_of(kLines)};
   LearningCurves curves(e, section);
   curves.metric(
       kLines, kError, "sum |x - x*|", "errors", "Errors of x", "Fig. 9");

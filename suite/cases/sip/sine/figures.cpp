@@ -246,9 +246,9 @@ Table gamma_table(const Evidence& at) {
 
 Section report(const Point& p, const Evidence& at) {
   const bool main = p.experiment() == kHard.experiment();
-  std::vector<MethodLine> lines = kLines;
-  if (main) lines.insert(lines.end(), kFinite.begin(), kFinite.end());
-  Section section{.tables = {score_table(at, p, lines), loss_table(at, lines)}};
+  const auto lines = main ? joined(kLines, kFinite) : kLines;
+  Section section{.tables = {score_table(at, p, lines), loss_table(at, lines)},
+                  .method_titles = titles_of(lines)};
   if (main) {
     section.tables.push_back(rate_table(at));
     section.tables.push_back(gamma_table(at));

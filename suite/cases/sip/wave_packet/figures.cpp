@@ -148,7 +148,8 @@ Table by_distance(const Evidence& e) {
 }
 
 Section report(const Evidence& e) {
-  Section section{.tables = {at_the_end(e), by_distance(e)}};
+  Section section{.tables = {at_the_end(e), by_distance(e)},
+                  .method_titles = titles_of(kLines)};
   LearningCurves curves(e, section);
   curves.add({.id = "fig16a",
               .title = "Two examples and their fits",
