@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "reports/digest_tables.h"
 #include "reports/plot.h"
 #include "reports/report.h"
-#include "reports/tables.h"
 
 namespace physinv {
 namespace {
@@ -38,7 +38,7 @@ Json digest_json(const std::vector<Section>& sections, const Json& provenance) {
   for (const Section& s : sections) {
     Json claims = Json::array(), tables = Json::array();
     for (const ClaimResult& c : s.claims) claims.push_back(to_json(c));
-    for (const Table& t : s.tables) tables.push_back(to_markdown(t));
+    for (const Table& t : s.tables) tables.push_back(table_json(t));
     out["sections"].push_back({{"experiment", s.experiment},
                                {"title", s.title},
                                {"paper", s.paper},

@@ -13,16 +13,14 @@
 namespace physinv {
 
 /// {provenance, sections: [{experiment, title, paper, claims, tables,
-/// figures}]}; a table is the text of its Markdown, figures are those that
-/// `kept_figures` has.
+/// figures}]}; tables by digest_tables.h, figures are those that `kept_figures`
+/// has.
 nlohmann::ordered_json digest_json(const std::vector<Section>& sections,
                                    const nlohmann::ordered_json& provenance);
 
-/// What a digest's pages show: claims as they are, tables by their words. There
-/// are no figures; std::runtime_error if it is no digest.
+/// What a digest's pages show: claims and tables. There are no figures;
+/// std::runtime_error if it is no digest.
 std::vector<Section> sections_of(const nlohmann::ordered_json& digest);
-/// A table as to_markdown wrote it, with words in place of numbers.
-Table table_of(const std::string& markdown, std::string id);
 
 /// The papers' figures in a campaign as SVG files, by the name that the digest
 /// gives them below the campaign's folder: "jpo-billiards-fig11.svg". Pictures

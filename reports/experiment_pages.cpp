@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "reports/digest.h"
+#include "reports/digest_tables.h"
 #include "reports/joined_tables.h"
 #include "reports/latest_claims.h"
 #include "reports/report.h"
@@ -76,25 +77,24 @@ std::string figures_of(const Json& section,
 
 /// What the campaign kept and, of a paper's own section, the tables that its
 /// experiments share, unless they were kept.
-std::vector<std::string> tables_of(const Json& section, const Json& digest) {
-  std::vector<std::string> tables;
+std::vector<Table> tables_of(const Json& section, const Json& digest) {
+  std::vector<Table> tables;
   for (const Json& table : section.at("tables"))
-    tables.push_back(table.get<std::string>());
+    tables.push_back(table_from(table));
   const std::string paper = section.at("paper");
   if (section.at("experiment").get<std::string>() != paper) return tables;
-  std::vector<Table> kept;
-  for (const std::string& table : tables) kept.push_back(table_of(table, ""));
-  for (const Table& joined : joined_tables(sections_of(digest), paper))
-    if (std::none_of(kept.begin(), kept.end(), [&](const Table& t) {
+  const auto kept = tables;
+  for (Table& joined : joined_tables(sections_of(digest), paper))
+    if (std::ranges::none_of(kept, [&](const Table& t) {
           return t.where == joined.where && t.title == joined.title;
         }))
-      tables.push_back(to_markdown(joined));
+      tables.push_back(std::move(joined));
   return tables;
 }
 
 std::string campaign_of(const NamedDigest& campaign,
                         const Json& section,
-                        const std::vector<std::string>& tables,
+                        const std::vector<Table>& tables,
                         const ResultsLinks& links) {
   const Json& p = campaign.digest.at("provenance");
   const auto word = [&](const char* key, std::size_t most = std::string::npos) {
@@ -123,7 +123,7 @@ std::string campaign_of(const NamedDigest& campaign,
             work_text(work->second, markdown, markdown_code);
         !text.empty())
       out += '\n' + text + '\n';
-  for (const std::string& table : tables) out += '\n' + table;
+  for (const Table& table : tables) out += '\n' + to_markdown(table);
   return out + figures_of(section, campaign.name, links);
 }
 

@@ -6,8 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "reports/digest_tables.h"
 #include "reports/results_page.h"
-#include "reports/tables.h"
 #include "suite/app/installed.h"
 #include "suite/app/published_campaign.h"
 #include "suite/evidence/claim.h"
@@ -90,7 +90,7 @@ void add_tables(const std::string& paper,
   for (const Overview& o : registry().overviews())
     if (o.paper == paper && o.report)
       for (const Table& table : o.report({stages, published, paper}).tables)
-        tables.push_back(to_markdown(table));
+        tables.push_back(table_json(table));
 }
 
 /// A digest keeps the numbers of its conditions: each claim is judged by what

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "reports/digest_tables.h"
 #include "reports/joined_tables.h"
 #include "reports/latest_claims.h"
 #include "reports/results_page.h"
@@ -309,32 +311,36 @@ TEST(Digest, SomethingElseIsNoDigest) {
   EXPECT_THROW(experiment_pages({strange}), std::runtime_error);
 }
 
-TEST(Digest, TablesComeBackAsWords) {
-  const Table table{.id = "t",
-                    .title = "Errors | of *all*",
-                    .where = "Table 4",
-                    .unit = "%",
-                    .digits = 1,
-                    .corner = "method <b>",
-                    .columns = {"n = 4", "n = 8"},
-                    .rows = {{"a|b", {{.ours = 5, .spread = 1, .paper = 7}}},
-                             {"_c_", {{}, {.text = "not run"}}}},
-                    .note = "As it is & \\ was."};
-  const Table back = table_of(to_markdown(table), "t");
+TEST(Digest, TablesKeepTheirValues) {
+  const Table table{
+      .id = "t",
+      .title = "Errors | of *all*",
+      .where = "Table 4",
+      .unit = "%",
+      .digits = 2,
+      .corner = "method <b>",
+      .columns = {"n = 4", "n = 8"},
+      .rows = {{"a|b", {{.ours = 1. / 3, .spread = 1, .paper = 7}}},
+               {"_c_", {{}, {.text = "not run"}}},
+               {"d", {{.ours = INFINITY}, {.paper = 2, .paper_spread = 0.5}}}},
+      .note = "As it is & \\ was."};
+  const Table back = table_from(Json::parse(table_json(table).dump()));
+  EXPECT_EQ(to_markdown(back), to_markdown(table));
   EXPECT_EQ(back.where, "Table 4");
-  EXPECT_EQ(back.title, "Errors | of *all*");
-  EXPECT_EQ(back.unit, "%");
-  EXPECT_EQ(back.corner, "method <b>");
-  EXPECT_EQ(back.columns,
-            (std::vector<std::string>{"n = 4", "paper", "n = 8"}));
-  ASSERT_EQ(back.rows.size(), 2U);
-  EXPECT_EQ(back.rows[0].label, "a|b");
-  EXPECT_EQ(back.rows[0].cells[0].text, "5.0 ± 1.0");
-  EXPECT_EQ(back.rows[0].cells[1].text, "7.0");
-  EXPECT_EQ(back.rows[1].label, "_c_");
-  EXPECT_EQ(back.rows[1].cells[2].text, "not run");
-  EXPECT_EQ(back.note, "As it is & \\ was.");
-  EXPECT_THROW(table_of("no table", "t"), std::runtime_error);
+  EXPECT_EQ(back.rows[0].cells[0].ours, 1. / 3);
+  EXPECT_FALSE(back.rows[1].cells[0].ours);
+  EXPECT_EQ(back.rows[1].cells[1].text, "not run");
+  EXPECT_FALSE(back.rows[2].cells[0].ours);
+  EXPECT_EQ(back.rows[2].cells[1].paper_spread, 0.5);
+}
+
+TEST(Digest, TablesOfAnotherFormAreRefused) {
+  Json table =
+      table_json({.title = "A", .columns = {"a"}, .rows = {{"b", {}}}});
+  EXPECT_NO_THROW(table_from(table));
+  table["rows"][0].push_back("more");
+  EXPECT_THROW(table_from(table), std::runtime_error);
+  EXPECT_ANY_THROW(table_from("| a |"));
 }
 
 TEST(Digest, SectionsHaveClaimsAndTables) {
