@@ -13,9 +13,6 @@
 namespace libraries {
 namespace {
 
-/// Ceres limits iterations alone; those of the suite end a search without end.
-constexpr Index kEvaluations = 100000;
-
 using Options = ceres::GradientProblemSolver::Options;
 
 Options defaults(CeresDirection direction) {
@@ -109,7 +106,7 @@ LibraryEnd minimize(CeresDirection direction,
 }  // namespace
 
 std::shared_ptr<const physinv::Stage> ceres_solve(CeresDirection direction,
-                                                  Index iterations) {
+                                                  const Task& task) {
   const bool bfgs = direction == CeresDirection::bfgs;
   const Options options = defaults(direction);
   return library_solve(
@@ -121,8 +118,7 @@ std::shared_ptr<const physinv::Stage> ceres_solve(CeresDirection direction,
                    {"parameter_tolerance",
                     physinv::text_of(options.parameter_tolerance)},
                    {"library", "ceres " CERES_VERSION_STRING}},
-       .iterations = iterations,
-       .evaluations = kEvaluations},
+       .task = task},
       [direction](double) -> Library {
         FLAGS_minloglevel = google::GLOG_FATAL;  // the end has its own words
         return

@@ -7,18 +7,17 @@
 #include <memory>
 
 #include "suite/core/method.h"
+#include "task.h"
 
 namespace libraries {
-
-using physinv::Index;
 
 enum class CeresDirection : std::uint8_t { bfgs, lbfgs };
 
 /// Stage `solve`: the solver on the true loss from the start. Ends as `gtol`
 /// where Ceres says CONVERGENCE (by the relative change of the loss, by the
 /// gradient or by the step), as `maxiter` where it says NO_CONVERGENCE, else as
-/// `linesearch`.
+/// `linesearch`. Takes no bounds.
 std::shared_ptr<const physinv::Stage> ceres_solve(CeresDirection direction,
-                                                  Index iterations = 1000);
+                                                  const Task& task);
 
 }  // namespace libraries

@@ -42,9 +42,12 @@ struct Test {
   }
 };
 
+Column column(const std::vector<double>& numbers) { return dlib::mat(numbers); }
+
 /// `strategy` makes it in its place: dlib copies members that are not set yet.
 template <class Strategy>
-LibraryEnd minimize(const DlibOptions& options,
+LibraryEnd minimize(const Task& task,
+                    const DlibOptions& options,
                     Strategy strategy,
                     Objective& objective,
                     const Vector<double>& x0,
@@ -53,16 +56,22 @@ LibraryEnd minimize(const DlibOptions& options,
   bool converged = false;
   Column x(x0.size());
   std::copy_n(x0.data(), x0.size(), x.begin());
-  const double loss = dlib::find_min(
-      strategy(),
-      Test{objective,
-           dlib::objective_delta_stop_strategy(options.min_delta),
-           iterations,
-           converged},
-      [&f](const Column& at) { return f.loss(at); },
-      [&f](const Column& at) { return f.gradient(at); },
-      x,
-      options.min_loss);
+  const Test test{objective,
+                  dlib::objective_delta_stop_strategy(options.min_delta),
+                  iterations,
+                  converged};
+  const auto value = [&f](const Column& at) { return f.loss(at); };
+  const auto slope = [&f](const Column& at) { return f.gradient(at); };
+  const double loss =
+      task.lower.empty()
+          ? dlib::find_min(strategy(), test, value, slope, x, options.min_loss)
+          : dlib::find_min_box_constrained(strategy(),
+                                           test,
+                                           value,
+                                           slope,
+                                           x,
+                                           column(task.lower),
+                                           column(task.upper));
   return {.x = Eigen::Map<const Vector<double>>(&x(0), x0.size()),
           .loss = loss,
           .status = converged ? Status::gtol : Status::maxiter,
@@ -73,7 +82,8 @@ LibraryEnd minimize(const DlibOptions& options,
 
 }  // namespace
 
-std::shared_ptr<const physinv::Stage> dlib_solve(const DlibOptions& options) {
+std::shared_ptr<const physinv::Stage> dlib_solve(const Task& task,
+                                                 const DlibOptions& options) {
   SUITE_CHECK(options.min_delta >= 0 && options.memory > 0,
               "dlib's min_delta is not negative, its memory positive");
   return library_solve(
@@ -83,18 +93,19 @@ std::shared_ptr<const physinv::Stage> dlib_solve(const DlibOptions& options) {
                                                  DLIB_MAJOR_VERSION,
                                                  DLIB_MINOR_VERSION,
                                                  DLIB_PATCH_VERSION)}}),
-       .iterations = options.iterations,
-       .evaluations = options.evaluations},
-      [options](double) -> Library {
-        return [options](Objective& f, const Vector<double>& x0, Index limit) {
+       .task = task},
+      [task, options](double) -> Library {
+        return [=](Objective& f, const Vector<double>& x0, Index limit) {
           if (options.strategy == DlibStrategy::bfgs)
             return minimize(
+                task,
                 options,
                 [] { return dlib::bfgs_search_strategy(); },
                 f,
                 x0,
                 limit);
           return minimize(
+              task,
               options,
               [&] {
                 return dlib::lbfgs_search_strategy(

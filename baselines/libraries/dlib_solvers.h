@@ -6,20 +6,17 @@
 #include <memory>
 
 #include "suite/core/method.h"
+#include "task.h"
 
 namespace libraries {
-
-using physinv::Index;
 
 enum class DlibStrategy : std::uint8_t { bfgs, lbfgs };
 
 struct DlibOptions {
   DlibStrategy strategy = DlibStrategy::bfgs;
-  double min_delta = 1e-7;     ///< dlib's default: ends at a smaller change
-  double min_loss = -1;        ///< no loss is as low; the manual's
-  Index memory = 10;           ///< pairs of L-BFGS; the manual's
-  Index iterations = 1000;     ///< line searches
-  Index evaluations = 100000;  ///< of a problem at most
+  double min_delta = 1e-7;  ///< dlib's default: ends at a smaller change
+  double min_loss = -1;     ///< no loss is as low; the manual's
+  Index memory = 10;        ///< pairs of L-BFGS; the manual's
 
   auto fields() const {
     const bool bfgs = strategy == DlibStrategy::bfgs;
@@ -27,15 +24,15 @@ struct DlibOptions {
         physinv::word("algorithm", bfgs ? "dlib_bfgs" : "dlib_lbfgs", strategy),
         physinv::field("min_delta", min_delta),
         physinv::field("min_loss", min_loss),
-        physinv::field("memory", memory),
-        physinv::implied(iterations, evaluations)};
+        physinv::field("memory", memory)};
   }
 };
 
-/// Stage `solve`: `find_min` on the true loss from the start. Ends as `gtol`
-/// where a line search changed the loss by less than `min_delta`, as `maxiter`,
-/// or, where dlib throws, as LibrarySolver says.
+/// Stage `solve`: `find_min`, with bounds `find_min_box_constrained`, on the
+/// true loss from the start. Ends as `gtol` where a line search changed the
+/// loss by less than `min_delta`, as `maxiter`, or, where dlib throws, as
+/// LibrarySolver says.
 std::shared_ptr<const physinv::Stage> dlib_solve(
-    const DlibOptions& options = {});
+    const Task& task, const DlibOptions& options = {});
 
 }  // namespace libraries

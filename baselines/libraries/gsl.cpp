@@ -93,15 +93,15 @@ LibraryEnd minimize(const GslOptions& options,
 
 }  // namespace
 
-std::shared_ptr<const physinv::Stage> gsl_bfgs2(const GslOptions& options) {
+std::shared_ptr<const physinv::Stage> gsl_bfgs2(const Task& task,
+                                                const GslOptions& options) {
   SUITE_CHECK(options.step > 0 && options.tol > 0,
               "GSL's step and tol are positive");
   return library_solve(
       {.options =
            physinv::chained(physinv::describe(options),
                             {{"library", std::string("gsl ") + gsl_version}}),
-       .iterations = options.iterations,
-       .evaluations = options.evaluations},
+       .task = task},
       [options](double gtol) -> Library {
         gsl_set_error_handler_off();  // errors are values
         return [options, gtol](

@@ -6,13 +6,13 @@
 
 #include "library_solver.h"
 #include "suite/core/method.h"
+#include "task.h"
 
 namespace libraries {
 
 struct LibraryFacts {
   physinv::Options options;  ///< what decides the numbers, library and version
-  Index iterations;          ///< of the library
-  Index evaluations;         ///< of a problem at most
+  Task task;
 };
 
 /// Stage `solve`: the library on the true losses from the start, once for each

@@ -4,6 +4,7 @@
 #include <nlopt.h>
 
 #include <algorithm>
+#include <exception>
 #include <memory>
 #include <new>
 #include <type_traits>
@@ -12,9 +13,6 @@
 
 namespace libraries {
 namespace {
-
-/// NLopt counts evaluations itself; those of the suite end what does not.
-constexpr Index kEvaluations = 100000;
 
 struct Kind {
   nlopt_algorithm algorithm;
@@ -38,14 +36,16 @@ struct Call {
   nlopt_opt solver;
   Vector<double> gradient;
   double best;
+  std::exception_ptr thrown = {};
 
-  /// No exception passes NLopt: what is spent stops it.
+  /// No exception passes NLopt, which is C: it is told to stop.
   static double f(unsigned d, const double* x, double* slope, void* self) {
     auto& call = *static_cast<Call*>(self);
     double loss = std::numeric_limits<double>::quiet_NaN();
     try {
       loss = call.objective.evaluate(x, call.gradient.data());
-    } catch (const BudgetSpent&) {
+    } catch (...) {
+      call.thrown = std::current_exception();
       nlopt_force_stop(call.solver);
       return loss;
     }
@@ -65,6 +65,7 @@ Status status_of(nlopt_result result) {
 }
 
 LibraryEnd minimize(Kind kind,
+                    const Task& task,
                     Objective& objective,
                     const Vector<double>& x0,
                     Index iterations) {
@@ -80,9 +81,16 @@ LibraryEnd minimize(Kind kind,
   // 0 would be no limit.
   nlopt_set_maxeval(solver.get(),
                     static_cast<int>(std::max<Index>(iterations, 1)));
+  if (!task.lower.empty()) {
+    nlopt_set_lower_bounds(solver.get(), task.lower.data());
+    nlopt_set_upper_bounds(solver.get(), task.upper.data());
+  }
   LibraryEnd end{.x = x0};
   const nlopt_result result =
       nlopt_optimize(solver.get(), end.x.data(), &end.loss);
+  if (call.thrown) std::rethrow_exception(call.thrown);
+  if (result == NLOPT_INVALID_ARGS)  // it evaluated nothing
+    end.loss = std::numeric_limits<double>::quiet_NaN();
   end.status = status_of(result);
   end.success = end.status == Status::gtol;
   end.message = nlopt_result_to_string(result);
@@ -98,15 +106,14 @@ std::string version() {
 }  // namespace
 
 std::shared_ptr<const physinv::Stage> nlopt_solve(NloptAlgorithm algorithm,
-                                                  Index iterations) {
+                                                  const Task& task) {
   const Kind kind = kind_of(algorithm);
   return library_solve(
       {.options = {{"algorithm", kind.name}, {"library", version()}},
-       .iterations = iterations,
-       .evaluations = kEvaluations},
-      [kind](double) -> Library {
-        return [kind](Objective& f, const Vector<double>& x0, Index limit) {
-          return minimize(kind, f, x0, limit);
+       .task = task},
+      [kind, task](double) -> Library {
+        return [=](Objective& f, const Vector<double>& x0, Index limit) {
+          return minimize(kind, task, f, x0, limit);
         };
       });
 }

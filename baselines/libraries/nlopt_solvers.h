@@ -6,10 +6,9 @@
 #include <memory>
 
 #include "suite/core/method.h"
+#include "task.h"
 
 namespace libraries {
-
-using physinv::Index;
 
 enum class NloptAlgorithm : std::uint8_t { lbfgs, slsqp, mma };
 
@@ -18,6 +17,6 @@ enum class NloptAlgorithm : std::uint8_t { lbfgs, slsqp, mma };
 /// Ends as `gtol` where NLopt says success, `maxiter` after so many
 /// evaluations, else `linesearch`.
 std::shared_ptr<const physinv::Stage> nlopt_solve(NloptAlgorithm algorithm,
-                                                  Index iterations = 1000);
+                                                  const Task& task);
 
 }  // namespace libraries

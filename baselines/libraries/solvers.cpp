@@ -15,21 +15,28 @@ namespace libraries {
 using physinv::Profile;
 using physinv::Row;
 
+std::vector<physinv::Method> solvers(const Task& task) {
+  return {
+      {"bfgs", {physinv::bfgs_solve({.iterations = task.iterations})}},
+      {"lbfgsb",
+       {physinv::lbfgsb_solve({.iterations = task.iterations,
+                               .lower = task.lower,
+                               .upper = task.upper})}},
+      {"gsl-bfgs2", {gsl_bfgs2(task)}},
+      {"nlopt-lbfgs", {nlopt_solve(NloptAlgorithm::lbfgs, task)}},
+      {"nlopt-slsqp", {nlopt_solve(NloptAlgorithm::slsqp, task)}},
+      {"nlopt-mma", {nlopt_solve(NloptAlgorithm::mma, task)}},
+      {"ceres-bfgs", {ceres_solve(CeresDirection::bfgs, task)}},
+      {"ceres-lbfgs", {ceres_solve(CeresDirection::lbfgs, task)}},
+      {"dlib-bfgs", {dlib_solve(task)}},
+      {"dlib-lbfgs", {dlib_solve(task, {.strategy = DlibStrategy::lbfgs})}}};
+}
+
 std::vector<physinv::Method> solvers(const physinv::Experiment& base) {
   const physinv::Method& bfgs = *physinv::find_method(base, "bfgs");
-  const Index limit = bfgs.chain.front()->default_iterations();
-  return {
-      bfgs,
-      {"lbfgsb", {physinv::lbfgsb_solve({.iterations = limit})}},
-      {"gsl-bfgs2", {gsl_bfgs2({.iterations = limit})}},
-      {"nlopt-lbfgs", {nlopt_solve(NloptAlgorithm::lbfgs, limit)}},
-      {"nlopt-slsqp", {nlopt_solve(NloptAlgorithm::slsqp, limit)}},
-      {"nlopt-mma", {nlopt_solve(NloptAlgorithm::mma, limit)}},
-      {"ceres-bfgs", {ceres_solve(CeresDirection::bfgs, limit)}},
-      {"ceres-lbfgs", {ceres_solve(CeresDirection::lbfgs, limit)}},
-      {"dlib-bfgs", {dlib_solve({.iterations = limit})}},
-      {"dlib-lbfgs",
-       {dlib_solve({.strategy = DlibStrategy::lbfgs, .iterations = limit})}}};
+  auto all = solvers({.iterations = bfgs.chain.front()->default_iterations()});
+  all.front() = bfgs;
+  return all;
 }
 
 std::vector<std::string> ids(const std::vector<physinv::Method>& methods) {

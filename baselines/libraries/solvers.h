@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "suite/harness/registry.h"
+#include "task.h"
 
 namespace libraries {
 
-/// BFGS as in `base`, the suite's L-BFGS-B, and the solvers of all libraries,
-/// for as many iterations.
+/// The suite's BFGS and L-BFGS-B, and the solvers of all libraries.
+std::vector<physinv::Method> solvers(const Task& task);
+/// BFGS as in `base`, the others for as many iterations.
 std::vector<physinv::Method> solvers(const physinv::Experiment& base);
 
 std::vector<std::string> ids(const std::vector<physinv::Method>& methods);
