@@ -74,6 +74,9 @@ physinv::Table ends_table(const Evidence& evidence) {
   std::vector<physinv::MethodLine> lines;
   for (const auto& method : experiment->methods)
     lines.push_back({.method = method.id, .label = method.id});
+  for (const auto& id : evidence.results.methods(evidence.experiment))
+    if (physinv::find_method(*experiment, id) == nullptr)
+      lines.push_back({.method = id, .label = id});  // of Python
   return physinv::table_by_method(
       {.id = "ends",
        .title = "How the solvers of each library end, in problems",
@@ -82,8 +85,11 @@ physinv::Table ends_table(const Evidence& evidence) {
            "Over all n and seeds. Gradient left: a success is claimed where an "
            "entry of the gradient is above {:g}, the experiment's gtol. Not "
            "best: a lower loss was evaluated than that of the point returned. "
-           "False loss: the loss named is not that of the point. Overrun: the "
-           "budget of evaluations was spent.",
+           "False loss: the loss named is not that of the point. Budget spent: "
+           "the "
+           "budget of evaluations was spent. Outside box: a point outside of "
+           "the "
+           "bounds was evaluated; empty without bounds.",
            gtol)},
       evidence,
       lines,
@@ -92,7 +98,8 @@ physinv::Table ends_table(const Evidence& evidence) {
        column("gradient left", claims_above(gtol)),
        column("not best", flagged("returned_not_best")),
        column("false loss", flagged("false_loss")),
-       column("overrun", flagged("overrun"))});
+       column("budget spent", flagged("budget_spent")),
+       column("outside box", flagged("outside_box"))});
 }
 
 }  // namespace libraries

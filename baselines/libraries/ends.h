@@ -10,8 +10,9 @@ namespace libraries {
 /// how many they are; on how many it claims success, and on how many of these
 /// an entry of the gradient is left above the experiment's gtol; on how many it
 /// returned another point than the lowest that it evaluated, named a loss that
-/// is not that of its point, and spent its budget of evaluations. The suite's
-/// own methods claim success by the status `gtol` and record none of the rest.
+/// is not that of its point, spent its budget of evaluations, and evaluated
+/// points outside of its bounds. The suite's own methods claim success by the
+/// status `gtol` and record none of the rest.
 physinv::Table ends_table(const physinv::Evidence& evidence);
 
 }  // namespace libraries

@@ -15,6 +15,8 @@
 namespace libraries {
 namespace {
 
+using physinv::VectorIn;
+
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// How often a library may swallow BudgetSpent.
@@ -25,6 +27,26 @@ constexpr std::size_t kRemembered = 64;
 
 bool finite(const double* x, Index d) {
   return std::all_of(x, x + d, [](double v) { return std::isfinite(v); });
+}
+
+/// Without bounds every point is; NaN is outside.
+bool within(const Task& task, const double* x, Index d) {
+  for (Index j = 0; !task.lower.empty() && j < d; ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    if (!(x[j] >= task.lower[at] && x[j] <= task.upper[at])) return false;
+  }
+  return true;
+}
+
+/// The largest entry of the gradient, of what it would move within the bounds.
+double left_of(const Task& task, VectorIn<double> x, Vector<double> gradient) {
+  for (Index j = 0; !task.lower.empty() && j < x.size(); ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    const double moved =
+        std::clamp(x(j) - gradient(j), task.lower[at], task.upper[at]);
+    gradient(j) = x(j) - moved;
+  }
+  return gradient.cwiseAbs().maxCoeff();
 }
 
 bool same(const double* a, const double* b, Index d) {
@@ -47,7 +69,7 @@ struct LibrarySolver::Run final : Objective {
   std::deque<Known> known;  ///< the last is the last evaluated
   Vector<double> asked;
   double best = kNan;
-  Index calls = 0;
+  Index calls = 0, outside = 0;
   int refusals = 0;
   bool waits = false, spent = false, met_nonfinite = false, returned = false;
   LibraryEnd end;
@@ -66,12 +88,13 @@ struct LibrarySolver::Run final : Objective {
 };
 
 double LibrarySolver::Run::evaluate(const double* x, double* gradient) {
-  if (++calls > solver.budget_) {
+  if (++calls > solver.task_.evaluations) {
     spent = true;
     // One that goes on all the same is not resumed any more.
     if (++refusals > kTries) fiber->suspend();
     throw BudgetSpent{};
   }
+  if (!within(solver.task_, x, d)) ++outside;
   if (!finite(x, d)) {
     met_nonfinite = true;
     std::fill_n(gradient, d, kNan);
@@ -125,14 +148,11 @@ void LibrarySolver::Run::run(const Library& library, Index iterations) {
   end.message = "budget of evaluations spent";
 }
 
-LibrarySolver::LibrarySolver(Library library,
-                             Index iterations,
-                             Index evaluations)
+LibrarySolver::LibrarySolver(Library library, const Task& task)
     : IndependentSolver(KnownPoint::evaluate),
       library_(std::move(library)),
-      maxiter_(iterations),
-      budget_(evaluations) {
-  SUITE_CHECK(iterations >= 0 && evaluations > 0,
+      task_(task) {
+  SUITE_CHECK(task.iterations >= 0 && task.evaluations > 0,
               "a library has iterations from 0 on and evaluations");
 }
 
@@ -149,7 +169,7 @@ bool LibrarySolver::begin(Index i, double* trial) {
   Run& run = *runs_[static_cast<std::size_t>(i)];
   run.remember({x_.col(i).data(), loss_(i), gradient_.col(i).data()});
   run.fiber = std::make_unique<Fiber>(
-      [this, &run](Fiber&) { run.run(library_, maxiter_); });
+      [this, &run](Fiber&) { run.run(library_, task_.iterations); });
   return go_on(i, trial);
 }
 
@@ -235,9 +255,11 @@ void LibrarySolver::report(physinv::Outcome& out) const {
     return run.returned && !std::isnan(run.end.loss) &&
            run.end.loss != loss_(i);
   });
-  array("overrun", [](Index, const Run& run) { return run.spent; });
+  array("budget_spent", [](Index, const Run& run) { return run.spent; });
+  if (!task_.lower.empty())
+    array("outside_box", [](Index, const Run& run) { return run.outside; });
   array("gradient_left", [&](Index i, const Run&) {
-    return gradient_.col(i).cwiseAbs().maxCoeff();
+    return left_of(task_, x_.col(i), gradient_.col(i));
   });
   for (const auto& run : runs_)
     if (!run->end.message.empty()) ++messages[run->end.message];

@@ -27,6 +27,7 @@
 #include "fiber.h"
 #include "optimizers/independent_solver.h"
 #include "suite/core/method.h"
+#include "task.h"
 
 namespace libraries {
 
@@ -63,8 +64,7 @@ using Library = std::function<LibraryEnd(
 
 class LibrarySolver final : public physinv::IndependentSolver {
  public:
-  /// `evaluations`: of a problem at most.
-  LibrarySolver(Library library, Index iterations, Index evaluations);
+  LibrarySolver(Library library, const Task& task);
   ~LibrarySolver() override;
 
   void start(physinv::BatchIn<double> x0) override;
@@ -72,8 +72,9 @@ class LibrarySolver final : public physinv::IndependentSolver {
   /// Adds to `out` the message (which ends, how many problems each) and arrays
   /// of 1 x examples, of what tables count: `claims_success`,
   /// `returned_not_best` (a lower loss was seen), `false_loss` (the library's
-  /// is not that of x), `overrun` (the budget was spent), `gradient_left` (its
-  /// largest entry at x).
+  /// is not that of x), `budget_spent` (of evaluations), `gradient_left` (its
+  /// largest entry at x, projected on the bounds); where the task has bounds
+  /// `outside_box`, how many evaluations were outside of them.
   void report(physinv::Outcome& out) const;
 
  private:
@@ -87,7 +88,7 @@ class LibrarySolver final : public physinv::IndependentSolver {
   bool is_iterate(Index i, const double* x) const;
 
   Library library_;
-  Index maxiter_, budget_;
+  Task task_;
   std::vector<std::unique_ptr<Run>> runs_;
 };
 

@@ -53,12 +53,13 @@ std::shared_ptr<const physinv::Stage> library_solve(
        .networks = physinv::Networks::none,
        .operations = operations,
        .source = source},
-      [make = std::move(make), task = facts.task](physinv::StageRun& run) {
+      [make = std::move(make), asked = facts.task](physinv::StageRun& run) {
+        Task task = asked;
+        task.iterations = run.iterations;
         Library library = make(run.setting.gtol);
         if (task.throws_at > 0)
           library = interrupted(std::move(library), task.throws_at);
-        LibrarySolver solver(
-            std::move(library), run.iterations, task.evaluations);
+        LibrarySolver solver(std::move(library), task);
         auto out = physinv::minimize(solver, run, run.oracle.start());
         solver.report(out);
         return out;

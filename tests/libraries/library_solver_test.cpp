@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr Index kBudget = 50;
+const Task kTask{.iterations = 10, .evaluations = kBudget};
 
 /// Two unknowns; `wall`: NaN where the first is above it.
 struct Bowl {
@@ -38,8 +39,8 @@ struct Solved {
   Bowl bowl;
   physinv::Outcome out;
 
-  Solved(Library library, Bowl b = {}, Index n = 3)
-      : solver(std::move(library), 10, kBudget), bowl(b) {
+  Solved(Library library, Bowl b = {}, Index n = 3, const Task& task = kTask)
+      : solver(std::move(library), task), bowl(b) {
     physinv::Batch<double> x0 = physinv::Batch<double>::Zero(2, n);
     for (Index j = 0; j < n; ++j) x0(1, j) = static_cast<double>(j);
     physinv::drive(solver, bowl, x0);
@@ -88,7 +89,7 @@ TEST(LibrarySolver, ASearchWithoutEndEndsWithTheBudget) {
   EXPECT_EQ(s.solver.status()[0], Status::maxiter);
   EXPECT_EQ(s.solver.evaluations()[0], kBudget + 1);
   EXPECT_EQ(s.solver.x()(0, 0), 0);
-  EXPECT_EQ(s.array("overrun"), 1);
+  EXPECT_EQ(s.array("budget_spent"), 1);
 }
 
 TEST(LibrarySolver, WhoSwallowsTheEndIsLeft) {
@@ -104,7 +105,7 @@ TEST(LibrarySolver, WhoSwallowsTheEndIsLeft) {
     return LibraryEnd{};
   });
   EXPECT_EQ(s.solver.status()[2], Status::maxiter);
-  EXPECT_EQ(s.array("overrun", 2), 1);
+  EXPECT_EQ(s.array("budget_spent", 2), 1);
   EXPECT_NE(s.out.message.find("went on"), s.out.message.npos);
 }
 
@@ -115,7 +116,7 @@ TEST(LibrarySolver, EvaluationsAtOnePointAreBounded) {
     return LibraryEnd{};
   });
   EXPECT_EQ(s.bowl.evaluations, 3);
-  EXPECT_EQ(s.array("overrun"), 1);
+  EXPECT_EQ(s.array("budget_spent"), 1);
 }
 
 TEST(LibrarySolver, WhatALibraryThrowsIsItsMessage) {
@@ -158,6 +159,22 @@ TEST(LibrarySolver, WhatIsReturnedIsHeldAgainstWhatWasSeen) {
   EXPECT_EQ(s.solver.loss()(0), 12.5);
   EXPECT_EQ(s.array("returned_not_best"), 1);
   EXPECT_EQ(s.array("false_loss"), 1);
+}
+
+TEST(LibrarySolver, PointsOutsideOfTheBoundsAreCounted) {
+  const auto library = [](Objective& f, const Vector<double>& x0, Index) {
+    Vector<double> x = x0, g(x0.size());
+    for (const double a : {0.0, 1.0, 1.5, -0.5, kNan})
+      x(0) = a, f.evaluate(x.data(), g.data());
+    return LibraryEnd{x0, kNan, Status::gtol, true, "converged"};
+  };
+  Task task = kTask;
+  EXPECT_FALSE(Solved(library).out.arrays.contains(
+      physinv::ArrayKey::own("outside_box")));
+  task.lower = {0, 0}, task.upper = {1, 1};
+  const Solved s(library, {}, 3, task);
+  EXPECT_EQ(s.array("outside_box", 0), 3);
+  EXPECT_EQ(s.array("outside_box", 2), 5);  // starts outside
 }
 
 }  // namespace
