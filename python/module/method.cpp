@@ -30,17 +30,25 @@ Status status_of(const std::string& name) {
                         "'; gtol, maxiter, linesearch and nonfinite are");
 }
 
+/// One number per problem.
+Batch<double> numbers_of(const py::object& values,
+                         const std::string& name,
+                         Index n) {
+  const auto array = taken<double>(values, name);
+  if (array.ndim() != 1 || array.size() != n)
+    throw py::value_error(
+        fmt::format("{} has no number for each of {} problems", name, n));
+  return Eigen::Map<const Vector<double>>(array.data(), n).transpose();
+}
+
 /// What a method says that it took, one count per problem.
 Batch<double> counts_of(const py::object& values,
                         const std::string& name,
                         Index n) {
-  const auto array = taken<double>(values, name);
-  const Eigen::Map<const Vector<double>> counts(array.data(), array.size());
-  if (array.ndim() != 1 || counts.size() != n || !counts.allFinite() ||
-      (counts.array() < 0).any())
-    throw py::value_error(fmt::format(
-        "{} are no counts from 0 on, one for each of {} problems", name, n));
-  return counts.transpose();
+  Batch<double> counts = numbers_of(values, name, n);
+  if (!counts.allFinite() || (counts.array() < 0).any())
+    throw py::value_error(name + " are counts from 0 on");
+  return counts;
 }
 
 std::vector<Status> statuses_of(const py::object& values, Index n) {
@@ -53,8 +61,9 @@ std::vector<Status> statuses_of(const py::object& values, Index n) {
   return all;
 }
 
-/// x, or x and a dict of status, iterations and evaluations per example. The
-/// record has the counts of the suite, and what a method says beside them.
+/// x, or x and a dict of status, iterations, evaluations and arrays per
+/// example and of a message. The record has the counts of the suite, and what a
+/// method says beside them.
 Outcome outcome_of(py::object result, const Solving& solving) {
   py::dict more;
   if (py::isinstance<py::tuple>(result) && py::len(result) == 2) {
@@ -75,9 +84,20 @@ Outcome outcome_of(py::object result, const Solving& solving) {
     } else if (name == "iterations" || name == "evaluations") {
       const std::string claimed = "claimed_" + name;
       out.arrays[ArrayKey::own(claimed)] = counts_of(given, name, solving.n());
+    } else if (name == "message") {
+      out.message = given.cast<std::string>();
+    } else if (name == "arrays") {
+      for (const auto& [own, values] : given.cast<py::dict>()) {
+        const auto text = own.cast<std::string>();
+        out.arrays[ArrayKey::own(text)] =
+            numbers_of(py::reinterpret_borrow<py::object>(values),
+                       "the array " + text,
+                       solving.n());
+      }
     } else {
       throw py::value_error("a method has no '" + name +
-                            "'; status, iterations and evaluations are known");
+                            "'; status, iterations, evaluations, message and "
+                            "arrays are known");
     }
   }
   if (std::all_of(out.status.begin(),

@@ -155,9 +155,10 @@ def method(name, experiments="*", needs="vjp", iterations=1000, **options):
             return x
 
     It sees what a method of the suite sees: problems without their solutions,
-    calls counted, its budget. It returns x, or x and a dict of status,
-    iterations and evaluations per example; these two stand beside what was
-    counted, as arrays claimed_iterations and so on. An exception fails its stage, and
+    calls counted, its budget. It returns x, or x and a dict: status, iterations
+    and evaluations per example, of which the latter two stand beside what was
+    counted, as arrays claimed_iterations and so on; message, a text; arrays, a
+    dict of numbers per example, which are stored. An exception fails its stage, and
     the campaign goes on. `physinv.run` has it in every profile, on the n and
     seeds of its rows.
 

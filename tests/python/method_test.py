@@ -55,7 +55,8 @@ def single(run):
             run.accept(i, k, x[i], loss[0])
             if k < run.iterations:
                 x[i] -= 0.1 * gradient[0]
-    return x, {"status": ["gtol"] * run.n, "iterations": [7] * run.n}
+    return x, {"status": ["gtol"] * run.n, "iterations": [7] * run.n,
+               "arrays": {"own": range(run.n)}, "message": "four are done"}
 '''
 
 KINDS = '''
@@ -270,6 +271,8 @@ class Methods(unittest.TestCase):
         self.assertEqual(list(e["iterations"]), [3] * 4)
         self.assertEqual(list(e["evaluations"]), [4] * 4)
         self.assertEqual(list(e["arrays"]["claimed_iterations"]), [7] * 4)
+        self.assertEqual(list(e["arrays"]["own"]), [0, 1, 2, 3])
+        self.assertEqual(row["message"], "four are done")
         c = self.results.curve(row["case"])
         self.assertTrue(np.array_equal(c["loss"][-1], e["loss"]))
 
