@@ -1,20 +1,21 @@
 #!/usr/bin/env python3
-"""landscapes_table.py RESULTS PAGE [--write]: the table of docs/solvers.md, what
+"""landscapes_table.py RESULTS PAGE [--write]: the tables of docs/solvers.md, what
 each library does on each landscape, from a campaign that ran
-`libraries/landscape-*` and its report. Exit code 1 if the page has another one
-of the same versions; --write renews it.
+`libraries/landscape-*` and its report. Exit code 1 if the page has other ones of
+the same versions; --write renews those whose solvers were run.
 """
 
 import collections
 import csv
 import json
-import re
 import sys
 
-BEGIN, END = "<!-- landscapes -->\n", "<!-- end of landscapes -->\n"
-METHODS = ["bfgs", "lbfgsb", "gsl-bfgs2", "nlopt-lbfgs", "nlopt-slsqp",
-           "nlopt-mma", "ceres-bfgs", "ceres-lbfgs", "dlib-bfgs", "dlib-lbfgs",
-           "scipy-bfgs", "scipy-lbfgsb", "scipy-slsqp", "scipy-tnc"]
+TABLES = {
+    "landscapes": [
+        "bfgs", "lbfgsb", "gsl-bfgs2", "nlopt-lbfgs", "nlopt-slsqp",
+        "nlopt-mma", "ceres-bfgs", "ceres-lbfgs", "dlib-bfgs", "dlib-lbfgs",
+        "scipy-bfgs", "scipy-lbfgsb", "scipy-slsqp", "scipy-tnc"],
+    "landscapes of R": ["r-bfgs", "r-lbfgsb", "r-nlminb", "r-ucminf"]}
 SURPRISES = {"gradient left": "success claimed, gradient left",
              "not best": "lower point evaluated", "false loss": "false loss",
              "budget spent": "budget spent", "outside box": "outside of the box"}
@@ -58,18 +59,18 @@ def ended(stage):
                 stage["physinv"]["stop"])
 
 
-def rows(results):
+def rows(results, methods):
     """A row for each landscape and way to end, with those who ended so."""
     for landscape, of in stages(results).items():
         words, groups = surprises(results, landscape), {}
-        for method in METHODS:
+        for method in methods:
             if method not in of:
                 group, evaluations = ("not run", "", ""), ""
             else:
                 stage = of[method]
                 group = (ended(stage), loss_of(stage, landscape),
                          words.get(method, ""))
-                evaluations = f" {stage['forward'] + stage['vjp']}"
+                evaluations = f" {stage.get('vjp', '')}"
             groups.setdefault(group, []).append(f"`{method}`{evaluations}")
         for (end, loss, text), who in sorted(
                 groups.items(), key=lambda g: g[0][0] == "not run"):
@@ -77,38 +78,46 @@ def rows(results):
             yield f"| `{name}` | {end} | {loss} | {', '.join(who)} | {text} |\n"
 
 
-def versions(results):
-    """GSL 2.7.1 and so on, of all that were run."""
+def versions(results, methods):
+    """GSL 2.7.1 and so on, of those that were run."""
     texts = set()
     for of in stages(results).values():
-        for stage in of.values():
-            options = stage["physinv"]["options"]
-            texts.add(options.get("library", options.get("libraries", "")))
+        for method in methods:
+            if method in of:
+                options = of[method]["physinv"]["options"]
+                text = options.get("library", options.get("libraries", ""))
+                texts.add(text.strip("'"))
     return ", ".join(sorted(texts - {""}))
 
 
-def table(results):
-    return (f"Run with {versions(results)}.\n\n"
-            "| landscape | ended | loss | solvers, with their evaluations | "
-            "surprises |\n| --- | --- | ---: | --- | --- |\n"
-            + "".join(rows(results)))
+def compare(name, kept, made):
+    """Fails where the tables differ; of other versions they may."""
+    if made[0] not in kept:
+        print(f"{name}: the page is of other versions: {made[0]}")
+    elif "".join(kept) != "".join(made):
+        sys.exit("".join([f"{name}: the page has another table; --write renews "
+                          "it\n", *(line for line in made if line not in kept)]))
 
 
 def main(results, page, *flags):
     with open(page) as f:
         text = f.read()
-    made = BEGIN + "\n" + table(results) + "\n" + END
-    kept = re.search(re.escape(BEGIN) + ".*" + re.escape(END), text, re.S)
+    for name, methods in TABLES.items():
+        begin, end = f"<!-- {name} -->\n\n", f"\n<!-- end of {name} -->\n"
+        before, rest = text.split(begin)
+        kept, after = rest.split(end)
+        run_with = versions(results, methods)
+        made = [f"Run with {run_with or 'nothing'}.\n", "\n",
+                "| landscape | ended | loss | solvers, with their evaluations | "
+                "surprises |\n", "| --- | --- | ---: | --- | --- |\n",
+                *rows(results, methods)]
+        if "--write" not in flags:
+            compare(name, kept.splitlines(True), made)
+        elif run_with:
+            text = before + begin + "".join(made) + end + after
     if "--write" in flags:
         with open(page, "w") as f:
-            f.write(text.replace(kept[0], made))
-    elif made.splitlines()[2] not in kept[0]:
-        print(f"{page} is of other versions than this: {made.splitlines()[2]}")
-    elif kept[0] != made:
-        old = set(kept[0].splitlines())
-        new = [line for line in made.splitlines() if line not in old]
-        sys.exit("\n".join([f"{page} has another table; --write renews it:",
-                            *new]))
+            f.write(text)
 
 
 if __name__ == "__main__":
