@@ -45,10 +45,10 @@ std::set<std::string> unknown_sources(const Experiment& e) {
 }
 
 /// Sources from outside whose numbers no stage owns up to: an edit of them
-/// would go unseen.
+/// would go unseen. Where experiments are left out, theirs are not known.
 std::vector<std::string> unreached_sources(const Registry& registry) {
   std::vector<std::string> wrong = outside_problems();
-  if (outsides().empty()) return wrong;
+  if (outsides().empty() || !elsewhere().empty()) return wrong;
   std::set<std::string> reached;
   for (const auto& e : registry.experiments())
     for (const Method& m : e->methods)

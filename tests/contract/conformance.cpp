@@ -14,6 +14,7 @@
 #include "suite/app/conformance_flags.h"
 #include "suite/app/plugins.h"
 #include "suite/harness/registry.h"
+#include "suite/harness/registry_errors.h"
 #include "suite/harness/select.h"
 #include "suite/results/nearest.h"
 
@@ -67,7 +68,8 @@ class Lines final : public testing::EmptyTestEventListener {
   std::size_t width_ = 0;
 };
 
-/// Leaves in the registry what `filters` match of the experiments from `first`.
+/// Leaves in the registry what `filters` match of the experiments from `first`;
+/// the others are elsewhere.
 void keep(std::size_t first, const std::vector<std::string>& filters) {
   const NameFilter filter(filters, "FILTER");
   const auto& all = registry().experiments();
@@ -85,7 +87,12 @@ void keep(std::size_t first, const std::vector<std::string>& filters) {
             : fmt::format("no experiment matches; nearest are {}",
                           fmt::join(nearest_names(names, filters.front()),  //
                                     ", ")));
-  if (asked.experiments().size() < all.size()) registry() = std::move(asked);
+  if (asked.experiments().size() == all.size()) return;
+  std::vector<std::string> others;
+  for (const auto& e : all)
+    if (asked.find(e->name) == nullptr) others.push_back(e->name);
+  name_elsewhere(std::move(others));
+  registry() = std::move(asked);
 }
 
 /// Methods and cases are those of the profile smoke.

@@ -217,12 +217,9 @@ class Libraries(unittest.TestCase):
         self.assertIn("0 mismatches", bench("verify", RESULTS))
 
     def test_contracts(self):
-        # What needs all experiments, of which the contracts take some alone.
-        bench("list", "--validate")
         # Of Navier-Stokes, whose solvers are these, they take 15 s. Landscapes
         # have no solutions to draw, and gradients that are wrong.
-        said = bench("conformance", "--gtest_filter=-Registered.*:"
-                     "ClaimContract.NamesWhatIsRegistered", *("libraries/" + p for p in (
+        said = bench("conformance", *("libraries/" + p for p in (
             "billiards", "wave-packet", "robotic-arm",
             "kuramoto-sivashinsky")))
         self.assertIn("gsl-bfgs2", said)
