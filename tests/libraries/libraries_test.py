@@ -25,7 +25,7 @@ PROGRAM, SOURCES, BUILD, WORK, COMPILER = sys.argv[1:6]
 HEADERS = ["ceres/gradient_problem_solver.h", "dlib/optimization.h",
            "gsl/gsl_multimin.h", "nlopt.h"]
 RESULTS, PLUGIN = WORK + "/results", WORK + "/tree/libraries.so"
-PROBLEMS, LANDSCAPES, METHODS, OURS = 5, 17, 10, {"bfgs", "lbfgsb"}
+PROBLEMS, LANDSCAPES, METHODS, OURS = 5, 17, 10, {"BFGS", "L-BFGS-B"}
 
 
 def run(*command, status=0):
