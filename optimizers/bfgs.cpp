@@ -63,7 +63,7 @@ bool Bfgs::advance(Index i, const Point& at, double* trial) {
   accept(i, at);
   if (dense::max_abs(d_, g) <= options_.gtol) return finish(i, Status::gtol);
   if (line.step() * dense::norm(d_, p) == 0) return finish(i, Status::gtol);
-  if (stalls(i)) return finish(i, Status::gtol);
+  if (stalls(i)) return finish(i, Status::ftol);
   if (iterations_[static_cast<std::size_t>(i)] < options_.maxiter) {
     dense::bfgs_update(
         d_, step_.data(), change_.data(), hessian(i), scratch_.data());

@@ -24,8 +24,7 @@ struct BfgsOptions {
 
 inline constexpr Index kStallSteps = 3;
 
-/// Ends as `gtol` (stalled problems, too), `linesearch`, `nonfinite`, or
-/// `maxiter`.
+/// Ends as `gtol`, `ftol` (stalled), `linesearch`, `nonfinite`, or `maxiter`.
 class Bfgs final : public IndependentSolver {
  public:
   explicit Bfgs(const BfgsOptions& options = {})

@@ -33,7 +33,6 @@ void GradientDescent::start(BatchIn<double> x0) {
   iteration_ = substep_ = 0;
   best_gradient_.setZero(d_, n);
   zero_.setZero(d_);
-  loss_.setConstant(n, kInf);
   best_loss_.setConstant(n, kInf);
   eta_.setConstant(n, options_.first_step);
   test_ = best_step_ = eta_;
@@ -43,16 +42,17 @@ void GradientDescent::start(BatchIn<double> x0) {
 }
 
 void GradientDescent::take(VectorIn<double> loss, BatchIn<double> gradient) {
+  if (rounds_ == 0) {
+    open_runs(loss, gradient);
+    return begin_iteration();
+  }
   skipped_ -= flat_.size();
   skipped_trials_ += flat_.size();
   for (const Index i : flat_) ++evaluations_[at(i)];
   judge(loss, gradient);
   const bool done = std::all_of(
       active_.begin(), active_.end(), [this](Index i) { return settled(i); });
-  if (rounds_ == 0) {
-    accepted_ = active_;
-    begin_iteration();
-  } else if (substep_ > 0 && (done || substep_ == options_.substeps)) {
+  if (substep_ > 0 && (done || substep_ == options_.substeps)) {
     end_iteration();
     begin_iteration();
   } else {
@@ -64,7 +64,23 @@ void GradientDescent::take(VectorIn<double> loss, BatchIn<double> gradient) {
   }
 }
 
-/// Notes what came back: of the start, a first trial or a sub-step.
+/// The starts came back. Those without a finite loss and gradient end.
+void GradientDescent::open_runs(VectorIn<double> loss,
+                                BatchIn<double> gradient) {
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    const Index i = active_[k], column = static_cast<Index>(k);
+    loss_(i) = loss(column);
+    gradient_.col(i) = gradient.col(column);
+    if (std::isfinite(loss_(i)) &&
+        dense::all_finite(d_, gradient_.col(i).data()))
+      accepted_.push_back(i);
+    else
+      finish(i, Status::nonfinite);
+  }
+  active_ = accepted_;
+}
+
+/// Notes what came back: of a first trial or a sub-step.
 void GradientDescent::judge(VectorIn<double> loss, BatchIn<double> gradient) {
   for (std::size_t k = 0; k < active_.size(); ++k) {
     const Index i = active_[k], column = static_cast<Index>(k);
@@ -73,14 +89,10 @@ void GradientDescent::judge(VectorIn<double> loss, BatchIn<double> gradient) {
     if (!std::isfinite(l) || !dense::all_finite(d_, g) ||
         !dense::all_finite(d_, trial_.col(column).data()))
       l = kInf, g = zero_.data();
-    if (rounds_ == 0) {
-      loss_(i) = l;
-      std::copy(g, g + d_, gradient_.col(i).data());
-    } else if (substep_ == 0) {
+    if (substep_ == 0)
       first_trial(i, l, g);
-    } else {
+    else
       substep(i, l, g);
-    }
   }
 }
 
@@ -161,7 +173,7 @@ double GradientDescent::step_tolerance_2() const {
 void GradientDescent::end_iteration() {
   for (const Index i : flat_) {
     ++iterations_[at(i)];
-    status_[at(i)] = loss_(i) < kInf ? Status::gtol : Status::nonfinite;
+    finish(i, Status::gtol);
   }
   std::size_t kept = 0;
   for (const Index i : active_) {
@@ -176,9 +188,9 @@ void GradientDescent::end_iteration() {
     }
     eta_(i) = best_step_(i);
     if (converged_[at(i)] != 0) {
-      status_[at(i)] = loss_(i) < kInf ? Status::gtol : Status::nonfinite;
+      finish(i, Status::gtol);
     } else if (worse) {
-      status_[at(i)] = Status::linesearch;
+      finish(i, Status::linesearch);
     } else {
       active_[kept++] = i;
     }

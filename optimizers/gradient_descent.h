@@ -9,12 +9,13 @@
 /// improved on L or converged, so a problem's path does depend on the others
 /// in its batch.
 ///
-/// A trial that is not finite, or its loss or gradient, counts as L = +inf, g =
-/// 0. How it is used: batched_solver.h. `accepted` lists the problems for which
-/// an iteration ended in the last round, moved or not (after the first round
-/// all that began, none inside an iteration); an iteration that was skipped
-/// because the gradient is zero is not announced. `evaluations` are those of
-/// the algorithm as it is written, skipped ones included.
+/// A start whose loss or gradient is not finite ends the problem before its
+/// first iteration. A trial that is not finite, or its loss or gradient, counts
+/// as L = +inf, g = 0. How it is used: batched_solver.h. `accepted` lists the
+/// problems for which an iteration ended in the last round, moved or not (after
+/// the first round all that began, none inside an iteration); an iteration that
+/// was skipped because the gradient is zero is not announced. `evaluations` are
+/// those of the algorithm as it is written, skipped ones included.
 #pragma once
 
 #include <vector>
@@ -34,8 +35,7 @@ struct GradientDescentOptions {
 };
 
 /// Ends as `gtol` (converged), `linesearch` (diverged: no step lowers the
-/// loss), `nonfinite` (no usable start), or `maxiter`. A loss that is not
-/// finite is +inf.
+/// loss), `nonfinite` (no usable start), or `maxiter`.
 class GradientDescent final : public BatchedSolver {
  public:
   explicit GradientDescent(const GradientDescentOptions& options = {})
@@ -45,6 +45,7 @@ class GradientDescent final : public BatchedSolver {
 
  private:
   void take(VectorIn<double> loss, BatchIn<double> gradient) override;
+  void open_runs(VectorIn<double> loss, BatchIn<double> gradient);
   void judge(VectorIn<double> loss, BatchIn<double> gradient);
   void begin_iteration();
   void propose(Index i, Index at);

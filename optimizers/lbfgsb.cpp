@@ -88,24 +88,25 @@ bool Lbfgsb::advance(Index i, const Point& at, double* trial) {
   const double loss_before = loss_(i);
   const double* g = gradient_.col(i).data();
   for (Index j = 0; j < d_; ++j) change_(j) = at.gradient[j] - g[j];
+  const bool moved = !std::equal(at.x, at.x + d_, x_.col(i).data());
   accept(i, at);
-  if (done(i, loss_before)) return false;
+  if (done(i, loss_before, moved)) return false;
   remember(i, slope);
   return iterate(i, trial);
 }
 
 /// The tests after an accepted step, in SciPy's order.
-bool Lbfgsb::done(Index i, double loss_before) {
+bool Lbfgsb::done(Index i, double loss_before, bool moved) {
   const auto at = static_cast<std::size_t>(i);
   if (iterations_[at] >= options_.maxiter || evaluations_[at] > options_.maxfun)
     return !finish(i, Status::maxiter);
   const double scale =
       std::max({std::abs(loss_before), std::abs(loss_(i)), 1.0});
-  const bool flat =
-      box_.gradient_norm(x_.col(i).data(), gradient_.col(i).data()) <=
-      options_.pgtol;
-  if (flat || loss_before - loss_(i) <= options_.ftol * scale)
+  if (box_.gradient_norm(x_.col(i).data(), gradient_.col(i).data()) <=
+      options_.pgtol)
     return !finish(i, Status::gtol);
+  if (loss_before - loss_(i) <= options_.ftol * scale)
+    return !finish(i, moved ? Status::ftol : Status::linesearch);
   return false;
 }
 

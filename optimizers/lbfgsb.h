@@ -33,8 +33,9 @@ struct LbfgsbOptions {
   std::vector<double> lower = {}, upper = {};
 };
 
-/// Ends as `gtol` for both tests, `linesearch`, `nonfinite`, or `maxiter` (or
-/// maxfun).
+/// Ends as `gtol`, `ftol`, `linesearch`, `nonfinite`, or `maxiter` (or maxfun).
+/// A search that finds no lower point and returns to its start, which lbfgsb.f
+/// takes for a change of the loss within ftol, ends as `linesearch`.
 class Lbfgsb final : public IndependentSolver {
  public:
   explicit Lbfgsb(LbfgsbOptions options = {})
@@ -53,7 +54,7 @@ class Lbfgsb final : public IndependentSolver {
   void set_box(Index d);
   bool begin(Index i, double* trial) override;
   bool advance(Index i, const Point& at, double* trial) override;
-  bool done(Index i, double loss_before);
+  bool done(Index i, double loss_before, bool moved);
   void remember(Index i, double slope);
   bool iterate(Index i, double* trial);
   bool start_search(Index i);

@@ -81,11 +81,8 @@ Outcome outcome_of(const BatchedSolver& solver, Oracle& oracle) {
   out.evaluations =
       Eigen::Map<const Vector<Index>>(solver.evaluations().data(), n)
           .cast<double>();
-  const bool converged =
-      std::all_of(out.status.begin(), out.status.end(), [](Status s) {
-        return s == Status::gtol;
-      });
-  out.stop = converged ? Stop::converged : Stop::iterations;
+  out.stop = std::ranges::all_of(out.status, converged) ? Stop::converged
+                                                        : Stop::iterations;
   oracle.add(Counter::skipped_forward,
              static_cast<Index>(solver.skipped_evaluations()));
   oracle.add(Counter::skipped_trials,

@@ -41,7 +41,7 @@ Count flagged(const char* name) {
 /// The suite's own claim it by their status.
 std::optional<Index> claims(const Run& run) {
   if (const auto own = flagged("claims_success")(run)) return own;
-  return std::ranges::count(run.stage->status, physinv::Status::gtol);
+  return std::ranges::count_if(run.stage->status, physinv::converged);
 }
 
 Count claims_above(double gtol) {

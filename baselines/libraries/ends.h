@@ -12,7 +12,7 @@ namespace libraries {
 /// returned another point than the lowest that it evaluated, named a loss that
 /// is not that of its point, spent its budget of evaluations, and evaluated
 /// points outside of its bounds. The suite's own methods claim success by the
-/// status `gtol` and record none of the rest.
+/// statuses `gtol` and `ftol` and record none of the rest.
 physinv::Table ends_table(const physinv::Evidence& evidence);
 
 }  // namespace libraries

@@ -1,6 +1,7 @@
 #include "python/module/method.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <pthread.h>
 #include <pybind11/stl.h>
 
@@ -23,11 +24,13 @@ namespace physinv::python {
 namespace {
 
 Status status_of(const std::string& name) {
-  for (const Status s :
-       {Status::gtol, Status::maxiter, Status::linesearch, Status::nonfinite})
+  std::vector<std::string_view> known;
+  for (const Status s : kStatuses) {
     if (name == to_string(s)) return s;
-  throw py::value_error("there is no status '" + name +
-                        "'; gtol, maxiter, linesearch and nonfinite are");
+    known.push_back(to_string(s));
+  }
+  throw py::value_error(fmt::format(
+      "there is no status '{}'; {} are", name, fmt::join(known, ", ")));
 }
 
 /// One number per problem.
@@ -100,10 +103,7 @@ Outcome outcome_of(py::object result, const Solving& solving) {
                             "arrays are known");
     }
   }
-  if (std::all_of(out.status.begin(),
-                  out.status.end(),
-                  [](Status s) { return s == Status::gtol; }) &&
-      !out.status.empty())
+  if (std::ranges::all_of(out.status, converged) && !out.status.empty())
     out.stop = Stop::converged;
   return out;
 }

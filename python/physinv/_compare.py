@@ -8,6 +8,7 @@ from physinv import _campaign
 
 # kSolvedLoss of suite/evidence/rank_test.h.
 _SOLVED = 1e-12
+_CONVERGED = ("gtol", "ftol")
 
 
 def compare(campaign, *others, **flags):
@@ -17,8 +18,8 @@ def compare(campaign, *others, **flags):
     of a run. pandas.DataFrame takes it.
 
     `solved`: the share of problems whose loss is below 1e-12, as in the tables
-    of the report. `converged`: the share at which the method met its tolerance
-    (status gtol), be it on a plateau. The problems of a run that failed have an
+    of the report. `converged`: the share at which the method met a tolerance
+    (status gtol or ftol), be it on a plateau. The problems of a run that failed have an
     infinite loss and count in both shares; iterations and seconds are of the
     other runs.
 
@@ -58,7 +59,7 @@ def _row(results, key, stages):
                                np.full(lost, np.inf)])
         row["loss"] = _median([np.where(np.isfinite(loss), loss, np.inf)])
         row["solved"] = float((loss < _SOLVED).sum()) / problems
-        row["converged"] = status.count("gtol") / problems
+        row["converged"] = sum(map(status.count, _CONVERGED)) / problems
         row["iterations"] = _median([e["iterations"] for e in each])
     seconds = [s["seconds"] for s in ended if s["seconds"] is not None]
     if seconds:

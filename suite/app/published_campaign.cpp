@@ -53,8 +53,7 @@ void add_times(StageRecord& stage, const Json& entry) {
 }
 
 void add_statuses(StageRecord& stage, const Json& own) {
-  for (const Status s :
-       {Status::gtol, Status::maxiter, Status::linesearch, Status::nonfinite})
+  for (const Status s : kStatuses)
     stage.status.insert(
         stage.status.end(),
         own.at("statuses").value(std::string(to_string(s)), std::size_t{0}),

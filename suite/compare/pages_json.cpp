@@ -34,9 +34,9 @@ Json to_json(const Reading& r) {
   add_counts(counts, r.counts);
   for (const auto& [end, count] : r.ends)
     ends[std::string(to_string(end))] = count;
-  for (std::size_t i = 0; i < r.statuses.size(); ++i)
-    if (r.statuses[i] > 0)
-      statuses[std::string(to_string(static_cast<Status>(i)))] = r.statuses[i];
+  for (const Status s : kStatuses)
+    if (const Index n = r.statuses[static_cast<std::size_t>(s)]; n > 0)
+      statuses[std::string(to_string(s))] = n;
   return {{"stages", r.stages},
           {"same_bits", r.same_bits},
           {"loss_median", finite(r.loss.median)},

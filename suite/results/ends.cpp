@@ -43,21 +43,24 @@ std::string status_text(const StatusCounts& counts,
                         std::string_view between,
                         char mark) {
   std::string text;
-  for (std::size_t i = 0; i < counts.size(); ++i)
-    if (counts[i] > 0)
+  for (const Status s : kStatuses)
+    if (counts[at(s)] > 0)
       text += fmt::format("{}{}{}{}",
                           text.empty() ? "" : between,
-                          to_string(static_cast<Status>(i)),
+                          to_string(s),
                           mark,
-                          counts[i]);
+                          counts[at(s)]);
   return text;
 }
 
 Direction direction(const StatusCounts& from, const StatusCounts& to) {
   if (from == to) return Direction::same;
-  constexpr auto kBad = at(Status::nonfinite), kGood = at(Status::gtol);
+  constexpr auto kBad = at(Status::nonfinite);
   if (from[kBad] != to[kBad]) return by(from[kBad], to[kBad]);
-  const Direction found = by(-from[kGood], -to[kGood]);
+  const auto misses = [](const StatusCounts& counts) {
+    return -counts[at(Status::gtol)] - counts[at(Status::ftol)];
+  };
+  const Direction found = by(misses(from), misses(to));
   return found == Direction::same ? Direction::other : found;
 }
 

@@ -22,7 +22,7 @@ std::string_view to_string(Direction direction);
 Direction direction(Stop from, Stop to);
 
 /// Examples of a stage by status.
-using StatusCounts = std::array<Index, 4>;
+using StatusCounts = std::array<Index, kStatuses.size()>;
 StatusCounts count(const std::vector<Status>& statuses);
 /// "gtol 3, maxiter 1"
 std::string status_text(const StatusCounts& counts,
@@ -30,7 +30,8 @@ std::string status_text(const StatusCounts& counts,
                         char mark = ' ');
 
 /// The more examples are `nonfinite`, the worse; with as many of them, the
-/// fewer end with `gtol`. Of maxiter and linesearch neither is better.
+/// fewer fulfil a tolerance, `gtol` or `ftol`. Of these two neither is better,
+/// nor of maxiter and linesearch.
 Direction direction(const StatusCounts& from, const StatusCounts& to);
 
 /// reproduced, partly judged, not judged, then what fails: explained by its

@@ -55,7 +55,7 @@ std::string read_text(hid_t parent, const char* name) {
 }
 
 Status status_of(std::int32_t code) {
-  if (code < 0 || code > static_cast<std::int32_t>(Status::nonfinite))
+  if (code < 0 || code > static_cast<std::int32_t>(kStatuses.back()))
     throw StoreError("an array status holds what is no status");
   return static_cast<Status>(code);
 }

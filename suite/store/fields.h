@@ -17,8 +17,7 @@ namespace physinv {
 template <class E>
 inline constexpr std::array<E, 0> kValues{};
 template <>
-inline constexpr std::array kValues<Status>{
-    Status::gtol, Status::maxiter, Status::linesearch, Status::nonfinite};
+inline constexpr std::array kValues<Status> = kStatuses;
 template <>
 inline constexpr std::array kValues<Stop>{Stop::converged,
                                           Stop::iterations,

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "suite/core/stop.h"
 #include "suite/store/errors.h"
 
 namespace physinv::hdf5 {
@@ -41,9 +42,7 @@ constexpr auto kStatus =
     "maxiter\0linesearch\0\0\0\0\0\0nonfinite\0\0\0\0\0\0\0\0\x1\x2\x3"sv;
 constexpr auto kFillValue = "\x2\x2\x2\x1\0\0\0\0"sv;
 constexpr auto kScalar = "\x1\0\0\0\0\0\0\0"sv;
-/// A list of as many numbers as there are statuses.
-constexpr auto kStatusList =
-    "\x1\x1\x1\0\0\0\0\0\x4\0\0\0\0\0\0\0\x4\0\0\0\0\0\0\0"sv;
+constexpr auto kList = "\x1\x1\x1\0\0\0\0\0"sv;
 /// Texts: of version 2, which end in a zero, ASCII, UTF-8.
 constexpr std::uint64_t kTexts[] = {0x13, 0x113, 0x1113};
 
@@ -274,9 +273,15 @@ class Walk {
             "an attribute");
   }
 
+  /// Numbers of statuses, as many as the program knew that wrote them.
   static void codes(std::string_view rest) {
-    require(rest.size() == 56 && rest.starts_with(kCode) &&
-                rest.substr(16, 24) == kStatusList,
+    require(rest.size() >= 40 && rest.starts_with(kCode) &&
+                rest.substr(16, 8) == kList,
+            "an attribute");
+    const auto count = number(rest, 24);
+    require(count > 0 && count <= kStatuses.size() &&
+                number(rest, 32) == count &&
+                rest.size() == padded(40 + count * 4),
             "an attribute");
   }
 

@@ -104,7 +104,7 @@ std::string wrong_names(const StageRecord& r) {
 
 std::string wrong_status(const StageRecord& r) {
   for (const Status s : r.status)
-    if (s > Status::nonfinite)
+    if (s > kStatuses.back())
       return fmt::format("status holds {}, which is no status",
                          static_cast<int>(s));
   return "";

@@ -58,7 +58,7 @@ def data_sets(path):
             ends = dict(zip(words, item.attrs["flag_values"].tolist()))
             if item.dtype != "<i4" or h5py.check_enum_dtype(item.dtype) or \
                     ends != {"gtol": 0, "maxiter": 1, "linesearch": 2,
-                             "nonfinite": 3}:
+                             "nonfinite": 3, "ftol": 4}:
                 wrong.append(f"{path} {name}: {item.dtype} {ends}")
     with h5py.File(path) as f:
         note("file", f)

@@ -182,6 +182,40 @@ TEST(GradientDescent, NonFiniteStart) {
   }
 }
 
+TEST(GradientDescent, AStartWithoutAGradientHasItsLoss) {
+  const auto cliff = [](std::span<const Index> active,
+                        BatchIn<double> x,
+                        VectorOut<double> loss,
+                        BatchOut<double> gradient) {
+    for (Index i = 0; i < x.cols(); ++i) {
+      const bool blind = active[static_cast<std::size_t>(i)] == 0;
+      loss(i) = blind ? 7 : 0.5 * x(0, i) * x(0, i);
+      gradient(0, i) = blind ? kNan : x(0, i);
+    }
+  };
+  Batch<double> x0(1, 2);
+  x0 << 3, 1;
+  GradientDescent gd, alone;
+  drive(gd, cliff, x0, [](const GradientDescent& g) {
+    for (const Index i : g.accepted()) EXPECT_EQ(i, 1);
+  });
+  EXPECT_EQ(gd.status()[0], Status::nonfinite);
+  EXPECT_EQ(gd.loss()(0), 7);
+  EXPECT_EQ(gd.x()(0), 3);
+  EXPECT_EQ(gd.iterations()[0], 0);
+  EXPECT_EQ(gd.evaluations()[0], 1);
+  // Others go on as if it were not there.
+  EXPECT_EQ(gd.status()[1], Status::gtol);
+  drive(
+      alone,
+      [&](auto, BatchIn<double> x, auto&& loss, auto&& gradient) {
+        const Index second = 1;
+        cliff({&second, 1}, x, loss, gradient);
+      },
+      x0.rightCols(1));
+  EXPECT_TRUE(same_bits(Batch<double>(gd.x().rightCols(1)), alone.x()));
+}
+
 /// Finite everywhere, at infinity too, where it is lowest.
 void slope_to_infinity(std::span<const Index>,
                        BatchIn<double> x,

@@ -6,7 +6,7 @@
 
 namespace physinv::test {
 int scipy_status(Status status) {
-  return status == Status::gtol ? 0 : status == Status::maxiter ? 1 : 2;
+  return converged(status) ? 0 : status == Status::maxiter ? 1 : 2;
 }
 
 void expect_run(const Json& entry,

@@ -310,7 +310,7 @@ TEST(Compare, EndsAreOrdered) {
 }
 
 TEST(Compare, ExamplesAreOrdered) {
-  using Counts = StatusCounts;  // gtol, maxiter, linesearch, nonfinite
+  using Counts = StatusCounts;  // gtol, maxiter, linesearch, nonfinite, ftol
   EXPECT_EQ(direction(Counts{3, 1, 0, 0}, Counts{4, 0, 0, 0}),
             Direction::better);
   EXPECT_EQ(direction(Counts{4, 0, 0, 0}, Counts{3, 0, 1, 0}),
@@ -318,6 +318,10 @@ TEST(Compare, ExamplesAreOrdered) {
   EXPECT_EQ(direction(Counts{3, 1, 0, 0}, Counts{3, 0, 1, 0}),
             Direction::other);
   EXPECT_EQ(direction(Counts{2, 2, 0, 0}, Counts{3, 0, 0, 1}),
+            Direction::worse);
+  EXPECT_EQ(direction(Counts{3, 1}, Counts{0, 1, 0, 0, 3}), Direction::other);
+  EXPECT_EQ(direction(Counts{3, 1}, Counts{3, 0, 0, 0, 1}), Direction::better);
+  EXPECT_EQ(direction(Counts{0, 0, 0, 0, 1}, Counts{0, 0, 1}),
             Direction::worse);
   EXPECT_EQ(direction(Stop::failed, Stop::skipped), Direction::other);
 }

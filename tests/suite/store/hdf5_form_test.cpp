@@ -149,8 +149,12 @@ TEST(Hdf5Form, RefusesOtherListsAndTexts) {
           "create an attribute");
     });
   };
+  // Statuses of today, and those that older programs knew.
+  hdf5::check_form(with_attribute(H5T_STD_I32LE, kStatuses.size()));
   hdf5::check_form(with_attribute(H5T_STD_I32LE, 4));
-  expect_refused(with_attribute(H5T_STD_I32LE, 5), "an attribute");
+  expect_refused(with_attribute(H5T_STD_I32LE, kStatuses.size() + 1),
+                 "an attribute");
+  expect_refused(with_attribute(H5T_STD_I32LE, 0), "an attribute");
   expect_refused(with_attribute(H5T_STD_U32LE, 4), "an attribute");
   expect_refused(with_attribute(H5T_IEEE_F64LE, 4), "an attribute");
   const hdf5::Handle padded(H5Tcopy(H5T_C_S1), H5Tclose, "make a type");

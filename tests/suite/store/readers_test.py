@@ -12,7 +12,7 @@ import sys
 import tempfile
 
 PATH, METHOD = os.path.abspath(sys.argv[1]), sys.argv[2]
-WORDS = "gtol maxiter linesearch nonfinite"
+WORDS = "gtol maxiter linesearch nonfinite ftol"
 JAVASCRIPT = """
 import fs from 'fs';
 import {File} from 'jsfive';
@@ -46,7 +46,7 @@ def ncdump():
     good = (p.returncode == 0 and not p.stderr and groups > 0 and
             p.stdout.count("int status(") == groups and
             p.stdout.count(f'status:flag_meanings = "{WORDS}"') == groups and
-            p.stdout.count("status:flag_values = 0, 1, 2, 3") == groups and
+            p.stdout.count("status:flag_values = 0, 1, 2, 3, 4") == groups and
             f':method = "{METHOD}"' in p.stdout)
     return good, p.stdout + p.stderr
 

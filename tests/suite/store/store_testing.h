@@ -167,7 +167,7 @@ inline StageRecord sample_stage(const CaseInfo& info,
     r.loss(2) = -0.0;
   }
   for (Index i = 0; i < info.n; ++i)
-    r.status.push_back(static_cast<Status>(i % 4));
+    r.status.push_back(static_cast<Status>(i % kStatuses.size()));
   r.example_iterations = sample_batch(info.n, 1, salt + 2);
   r.example_evaluations = sample_batch(info.n, 1, salt + 3);
   for (int p = 0; p < 5; ++p) {
