@@ -18,6 +18,7 @@
 #include "suite/evidence/method_titles.h"
 #include "suite/evidence/performance_profiles.h"
 #include "suite/evidence/standings.h"
+#include "suite/evidence/status_table.h"
 #include "suite/evidence/work_precision.h"
 #include "suite/harness/judge.h"
 #include "suite/harness/registry.h"
@@ -138,6 +139,9 @@ void compare_methods(const Results& results,
   add_work_precision(section, results, experiment, section.method_titles);
   add(learning_curves(results, experiment, named));
   add_standings(section, common, section.method_titles);
+  if (Table ends = status_table(results, experiment, section.method_titles);
+      !ends.rows.empty())
+    section.tables.push_back(std::move(ends));
   for (Figure& figure : performance_profile_figures(common, named))
     section.figures.push_back(std::move(figure));
 }
