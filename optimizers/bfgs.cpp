@@ -80,11 +80,19 @@ bool Bfgs::iterate(Index i, double* trial) {
   dense::multiply(d_, hessian(i), g, p);
   for (Index j = 0; j < d_; ++j) p[j] = -p[j];
   const double slope = dense::dot(d_, g, p);
-  double first = 2.02 * (loss_(i) - previous_loss_(i)) / slope;
-  if (!(first < 1) || first < 0 || slope == 0) first = 1;
   const auto next = searches_[static_cast<std::size_t>(i)].start(
-      options_.search, loss_(i), slope, first);
+      options_.search, loss_(i), slope, first_step(i, slope));
   return search(i, next, trial);
+}
+
+/// Of the line search, in lengths of its direction.
+double Bfgs::first_step(Index i, double slope) const {
+  const bool begins = iterations_[static_cast<std::size_t>(i)] == 0;
+  if (begins && options_.first_trial != FirstTrial::scipy)
+    return first_trial(options_.first_trial,
+                       dense::norm(d_, gradient_.col(i).data()));
+  const double first = 2.02 * (loss_(i) - previous_loss_(i)) / slope;
+  return !(first < 1) || first < 0 || slope == 0 ? 1 : first;
 }
 
 /// Turns a move of the line search into the next trial point or the end.

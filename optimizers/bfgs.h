@@ -3,12 +3,14 @@
 ///
 /// How it is used: batched_solver.h. A search halves its interval at a loss of
 /// +inf, as SciPy's does. Where SciPy would walk on with NaN, it fails (see
-/// line_search.h): results are finite if the start and its loss are.
+/// line_search.h), or halves as well if the option says so: results are finite
+/// if the start and its loss are.
 #pragma once
 
 #include <vector>
 
 #include "optimizers/independent_solver.h"
+#include "optimizers/steps/first_trial.h"
 #include "optimizers/steps/line_search.h"
 
 namespace physinv {
@@ -19,6 +21,7 @@ struct BfgsOptions {
   /// Beyond SciPy: done when the last kStallSteps steps together lowered the
   /// loss by less than this share of it. 0: never.
   double stall = 0;
+  FirstTrial first_trial = FirstTrial::scipy;
   LineSearchOptions search = {};
 };
 
@@ -36,6 +39,7 @@ class Bfgs final : public IndependentSolver {
   bool begin(Index i, double* trial) override;
   bool advance(Index i, const Point& at, double* trial) override;
   bool iterate(Index i, double* trial);
+  double first_step(Index i, double slope) const;
   bool search(Index i, LineSearch::Next next, double* trial);
   bool stalls(Index i);
 

@@ -76,7 +76,9 @@ std::shared_ptr<const Stage> bfgs(const BfgsStageOptions& options,
   return make_stage(std::move(stage), [options, refines](StageRun& run) {
     BfgsOptions bfgs{.gtol = options.gtol > 0 ? options.gtol : run.setting.gtol,
                      .maxiter = run.iterations,
-                     .stall = options.stall};
+                     .stall = options.stall,
+                     .first_trial = options.first_trial};
+    bfgs.search.back_off = options.back_off;
     if (options.search_evaluations > 0)
       bfgs.search.max_together = options.search_evaluations;
     Bfgs solver(bfgs);

@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+#include "optimizers/steps/first_trial.h"
 #include "suite/core/method.h"
 
 namespace physinv {
@@ -21,12 +22,17 @@ struct BfgsStageOptions {
   /// Losses and gradients are evaluated in float and the losses rounded to it;
   /// array `own_loss` (1 x examples) has those of the estimates.
   bool single = false;
+  FirstTrial first_trial = FirstTrial::scipy;
+  /// Line searches halve their interval at NaN, too, instead of ending there.
+  bool back_off = false;
 
   auto fields() const {
     return std::tuple{if_changed(field("stall", stall)),
                       if_changed(field("search", search_evaluations)),
                       if_changed(field("gtol", gtol)),
                       if_changed(field("single", single)),
+                      if_changed(field("first_trial", first_trial)),
+                      if_changed(field("back_off", back_off)),
                       implied(iterations)};
   }
 };

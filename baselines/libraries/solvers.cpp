@@ -15,6 +15,14 @@ namespace libraries {
 using physinv::Profile;
 using physinv::Row;
 
+namespace {
+
+Index limit_of(const physinv::Method& bfgs) {
+  return bfgs.chain.front()->default_iterations();
+}
+
+}  // namespace
+
 std::vector<physinv::Method> solvers(const Task& task) {
   return {
       {"bfgs", {physinv::bfgs_solve({.iterations = task.iterations})}},
@@ -34,8 +42,25 @@ std::vector<physinv::Method> solvers(const Task& task) {
 
 std::vector<physinv::Method> solvers(const physinv::Experiment& base) {
   const physinv::Method& bfgs = *physinv::find_method(base, "bfgs");
-  auto all = solvers({.iterations = bfgs.chain.front()->default_iterations()});
+  auto all = solvers({.iterations = limit_of(bfgs)});
   all.front() = bfgs;
+  return all;
+}
+
+std::vector<physinv::Method> bfgs_settings(const physinv::Experiment& base) {
+  using physinv::FirstTrial;
+  const Index limit = limit_of(*physinv::find_method(base, "bfgs"));
+  std::vector<physinv::Method> all;
+  const auto add = [&](const char* id, physinv::BfgsStageOptions options) {
+    options.iterations = limit;
+    all.push_back({id, {physinv::bfgs_solve(options)}});
+  };
+  add("bfgs-shorter", {.first_trial = FirstTrial::shorter});
+  add("bfgs-gradient", {.first_trial = FirstTrial::gradient});
+  add("bfgs-tenth-gradient", {.first_trial = FirstTrial::tenth_gradient});
+  add("bfgs-length-1", {.first_trial = FirstTrial::length_1});
+  add("bfgs-length-tenth", {.first_trial = FirstTrial::length_tenth});
+  add("bfgs-back-off", {.back_off = true});
   return all;
 }
 

@@ -1,5 +1,6 @@
 // Study `studies/whose-bfgs-<problem>`: joint optimization as in the JPO paper
-// against each library's solver, on the same problems from the same starts.
+// against each library's solver and settings of the suite's BFGS, on the same
+// problems from the same starts.
 #include "suite/harness/study.h"
 
 #include <string>
@@ -29,6 +30,8 @@ void add(const std::string& problem) {
   const auto base = physinv::registry().find(of);
   if (base == nullptr) return;
   auto methods = solvers(*base);
+  for (auto& setting : bfgs_settings(*base))
+    methods.push_back(std::move(setting));
   auto profiles = profiles_with(
       *base, "jpo", [&](const physinv::Profile&, physinv::Row row) {
         return rows(std::move(row), methods);

@@ -82,6 +82,7 @@ Next LineSearch::move_on(const LineSearchOptions& options,
                          double f,
                          double slope) {
   const bool finite = std::isfinite(f) && std::isfinite(slope);
+  if (options.back_off && !finite) f = kInf;
   // Search 2 halves its interval where the loss is +inf; the slope there is not
   // read.
   const bool comparable = finite || f == kInf;

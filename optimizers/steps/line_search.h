@@ -7,7 +7,7 @@
 /// zoom) starts again from the first trial step, as in SciPy 1.10. Values that
 /// are not finite fail search 1. In search 2 a loss of +inf is above any limit,
 /// as in SciPy, so that the interval is halved; SciPy would walk on with NaN,
-/// which here ends search 2 with `nonfinite`.
+/// which here ends search 2 with `nonfinite`, or counts as +inf (`back_off`).
 #pragma once
 
 #include <cstdint>
@@ -27,6 +27,8 @@ struct LineSearchOptions {
   /// Without search 2, as L-BFGS-B has it: where rounding or an end of the
   /// range leaves search 1 nothing to try, its step is accepted.
   bool search_1_only = false;
+  /// In search 2 all that is not finite counts as a loss of +inf.
+  bool back_off = false;
 };
 
 class LineSearch {

@@ -351,6 +351,64 @@ TEST(Bfgs, RecoversFromAWallOfInfinity) {
   }
 }
 
+TEST(Bfgs, BacksOffAtNanWhereItIsAsked) {
+  for (const double wall : {kNan, kInf, -kInf}) {
+    const auto walled =
+        single([wall](const Vector<double>& x, Vector<double>& g) {
+          g(0) = x(0) < 0 ? kNan : 2e4 * (x(0) - 0.01);
+          return x(0) < 0 ? wall : 1e4 * (x(0) - 0.01) * (x(0) - 0.01);
+        });
+    const Batch<double> x0 = Batch<double>::Constant(1, 1, 0.8);
+    const BfgsOptions asked{.search = {.back_off = true}};
+    const Bfgs with = solve(walled, x0, asked), without = solve(walled, x0);
+    EXPECT_EQ(with.status()[0], Status::gtol);
+    EXPECT_NEAR(with.x()(0), 0.01, 1e-9);
+    EXPECT_EQ(without.x()(0) == 0.8, wall != kInf);
+  }
+  // Where all is finite there is nothing to back off from.
+  const Batch<double> x0 = starts(3, 30);
+  for (const char* name : {"wavy", "rosenbrock", "abs"}) {
+    const Bfgs plain = solve(ClosedForm{name}, x0);
+    const Bfgs asked =
+        solve(ClosedForm{name}, x0, {.search = {.back_off = true}});
+    EXPECT_TRUE(test::same_bits(plain.x(), asked.x()));
+    EXPECT_EQ(plain.evaluations(), asked.evaluations());
+  }
+}
+
+TEST(Bfgs, FirstTrialsAreAsLongAsAsked) {
+  // Down a slope without end; the second point evaluated is the first trial.
+  const auto length = [](FirstTrial rule, double norm) {
+    double first = 0;
+    Index calls = 0;
+    const auto slope = single([&](const Vector<double>& x, Vector<double>& g) {
+      if (++calls == 2) first = -x(0);
+      g(0) = norm;
+      return norm * x(0);
+    });
+    Bfgs solver({.gtol = 1e-12, .maxiter = 1, .first_trial = rule});
+    drive(solver, slope, Batch<double>::Zero(1, 1));
+    return first;
+  };
+  struct Case {
+    FirstTrial rule;
+    double steep, shallow;  // at gradients of 1e4 and 1e-4
+  };
+  for (const Case& c : {Case{FirstTrial::scipy, 1.01, 1e-4},
+                        Case{FirstTrial::shorter, 1, 1e-4},
+                        Case{FirstTrial::gradient, 1e4, 1e-4},
+                        Case{FirstTrial::tenth_gradient, 1e3, 1e-5},
+                        Case{FirstTrial::length_1, 1, 1},
+                        Case{FirstTrial::length_tenth, 0.1, 0.1}}) {
+    for (const auto& [norm, expected] :
+         {std::pair(1e4, c.steep), std::pair(1e-4, c.shallow)}) {
+      EXPECT_NEAR(length(c.rule, norm), expected, 1e-9 * expected)
+          << to_string(c.rule) << " " << norm;
+      EXPECT_NEAR(first_trial(c.rule, norm) * norm, expected, 1e-9 * expected);
+    }
+  }
+}
+
 TEST(Bfgs, OverflowingPointsAreNotEvaluated) {
   // tanh is finite at infinity, with a gradient of 0: a trap.
   const auto trap = single([](const Vector<double>& x, Vector<double>& g) {
