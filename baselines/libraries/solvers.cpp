@@ -61,6 +61,8 @@ std::vector<physinv::Method> bfgs_settings(const physinv::Experiment& base) {
   add("bfgs-length-1", {.first_trial = FirstTrial::length_1});
   add("bfgs-length-tenth", {.first_trial = FirstTrial::length_tenth});
   add("bfgs-back-off", {.back_off = true});
+  add("bfgs-gradient-back-off",
+      {.first_trial = FirstTrial::gradient, .back_off = true});
   return all;
 }
 

@@ -15,8 +15,8 @@ std::vector<physinv::Method> solvers(const Task& task);
 /// BFGS as in `base`, the others for as many iterations.
 std::vector<physinv::Method> solvers(const physinv::Experiment& base);
 
-/// BFGS with other first trials, and one that backs off at NaN, for as many
-/// iterations as that of `base`.
+/// BFGS with other first trials, and with two of them backing off at NaN, for
+/// as many iterations as that of `base`.
 std::vector<physinv::Method> bfgs_settings(const physinv::Experiment& base);
 
 std::vector<std::string> ids(const std::vector<physinv::Method>& methods);

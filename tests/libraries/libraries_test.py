@@ -26,7 +26,7 @@ HEADERS = ["ceres/gradient_problem_solver.h", "dlib/optimization.h",
            "gsl/gsl_multimin.h", "nlopt.h"]
 RESULTS, PLUGIN = WORK + "/results", WORK + "/tree/libraries.so"
 PROBLEMS, LANDSCAPES, METHODS, OURS = 5, 17, 10, {"BFGS", "L-BFGS-B"}
-SETTINGS = 6  # of our BFGS, in the study
+SETTINGS = 7  # of our BFGS, in the study
 
 
 def run(*command, status=0):
