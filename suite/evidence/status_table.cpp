@@ -62,9 +62,7 @@ Table status_table(const Results& results,
               .title = "How problems ended",
               .digits = 0,
               .corner = "method",
-              .note =
-                  "Problems of all n and seeds. Stayed: the solver "
-                  "accepted no step, so the result is the start."};
+              .note = "Problems of all n and seeds."};
   const std::vector<Ends> all = ends_of(results, experiment, method_titles);
   if (std::ranges::all_of(all, [](const Ends& ends) {
         return ends.stayed == 0 && ends.statuses.front() == ends.problems;
@@ -84,6 +82,9 @@ Table status_table(const Results& results,
       return ends.statuses[at];
     });
   add("stayed", [](const Ends& ends) { return ends.stayed; });
+  table.note += table.columns.back() == "stayed"
+                    ? " Stayed: no step was accepted, the result is the start."
+                    : " None stayed at its start.";
   return table;
 }
 
