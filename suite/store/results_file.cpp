@@ -167,20 +167,28 @@ std::map<std::string, std::set<std::string>> known_runs(
   return runs;
 }
 
+/// What is true of a run as the entry can tell it: earlier files of this
+/// version have neither `data_ms` nor the status `ftol`, as which nothing ended
+/// then.
+Json as_told(Json truth, const Json& entry) {
+  const Json& told = entry.at("physinv");
+  Json& own = truth.at("physinv");
+  if (!told.contains("data_ms")) own.erase("data_ms");
+  const auto statuses = told.find("statuses");
+  if (statuses != told.end() && !statuses->contains("ftol") &&
+      own.at("statuses").at("ftol") == 0)
+    own.at("statuses").erase("ftol");
+  return truth;
+}
+
 /// Is an entry what is true of its run, or of a run that counts no more: its
 /// line was replaced, torn or deleted?
 bool agrees(const Json& entry,
             const Truth& truth,
             const std::map<std::string, std::set<std::string>>& known) {
   const std::string run = run_of(entry);
-  if (const auto own = truth.find(run); own != truth.end()) {
-    if (entry.at("physinv").contains("data_ms"))
-      return own->second == own_part(entry);
-    // Earlier files of this version do not tell of it.
-    Json earlier = own->second;
-    earlier.at("physinv").erase("data_ms");
-    return earlier == own_part(entry);
-  }
+  if (const auto own = truth.find(run); own != truth.end())
+    return as_told(own->second, entry) == own_part(entry);
   const auto runs = known.find(entry.at("name").get<std::string>());
   return runs == known.end() || runs->second.contains(run);
 }

@@ -317,6 +317,24 @@ TEST_F(StoreTest, ResultsFromBeforeThePlanAreNotAltered) {
   EXPECT_EQ(read_results(out_.path())["context"]["date"], "today");
 }
 
+TEST_F(StoreTest, ResultsFromBeforeTheStatusFtolAreRead) {
+  const auto earlier = [&](const CaseInfo& info) {
+    const TemporaryDirectory out;
+    Store store(out.path());
+    store.set_plan({info}, {{"date", "today"}});
+    append(store, info, 0);
+    store.finish();
+    auto results = read_results(out.path());
+    results["benchmarks"][0]["physinv"]["statuses"].erase("ftol");
+    Folder(out.path()).write("results.json", results_text(sealed(results)));
+    checked_cases(Catalog::read(out.path()));
+  };
+  EXPECT_NO_THROW(earlier(a_));
+  const CaseInfo more = sample_case("bfgs", 8, 0);  // one of them is ftol
+  EXPECT_TRUE(contains(message_of<StoreError>([&] { earlier(more); }),
+                       "says otherwise of jpo/sample"));
+}
+
 TEST_F(StoreTest, FileInsteadOfADirectory) {
   write_file(out_ / "file", "");
   EXPECT_THROW(Store(out_ / "file"), StoreError);
