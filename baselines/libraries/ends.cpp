@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "suite/evidence/guests.h"
 #include "suite/evidence/method_table.h"
 #include "suite/harness/registry.h"
 
@@ -74,9 +75,8 @@ physinv::Table ends_table(const Evidence& evidence) {
   std::vector<physinv::MethodLine> lines;
   for (const auto& method : experiment->methods)
     lines.push_back({.method = method.id, .label = method.id});
-  for (const auto& id : evidence.results.methods(evidence.experiment))
-    if (physinv::find_method(*experiment, id) == nullptr)
-      lines.push_back({.method = id, .label = id});  // of Python
+  for (const auto& id : physinv::guests(evidence))
+    lines.push_back({.method = id, .label = id});
   return physinv::table_by_method(
       {.id = "ends",
        .title = "How the solvers of each library end, in problems",
@@ -86,10 +86,8 @@ physinv::Table ends_table(const Evidence& evidence) {
            "entry of the gradient is above {:g}, the experiment's gtol. Not "
            "best: a lower loss was evaluated than that of the point returned. "
            "False loss: the loss named is not that of the point. Budget spent: "
-           "the "
-           "budget of evaluations was spent. Outside box: a point outside of "
-           "the "
-           "bounds was evaluated; empty without bounds.",
+           "the budget of evaluations was spent. Outside box: a point outside "
+           "of the bounds was evaluated; empty without bounds.",
            gtol)},
       evidence,
       lines,

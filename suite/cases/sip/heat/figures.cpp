@@ -146,11 +146,10 @@ Panel picture(std::string title, const Vector<double>& field) {
 Figure pictures(const Evidence& e) {
   auto lines = networks();
   std::erase_if(lines, [](const auto& l) { return l.method == "sgd-b8-lr3"; });
-  lines.insert(lines.end(), kDirect.begin(), kDirect.end());
   const auto physics = problems::heat({.resolution = kSide}).make<double>();
   return answered_fields(
       e,
-      lines,
+      joined(lines, kDirect),
       {.where = "Fig. 10",
        .picture = picture,
        .observe = [&](const Answered& a) { return observed(*physics, a); }});
