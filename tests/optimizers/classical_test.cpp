@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <memory>
+#include <utility>
+
 #include "optimizers/minimize.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
@@ -15,15 +19,19 @@ namespace {
 constexpr Index kCount = 9;
 
 TEST(Classical, FindsTheOptimumOfAQuadratic) {
-  for (const auto& stage :
-       {bfgs_solve(), lbfgsb_solve(), gradient_descent_solve()}) {
+  // Of L-BFGS-B two meet the tolerance of the loss and not that of the
+  // gradient.
+  const std::pair<std::shared_ptr<const Stage>, Index> ends_by_loss[] = {
+      {bfgs_solve(), 0}, {lbfgsb_solve(), 2}, {gradient_descent_solve(), 0}};
+  for (const auto& [stage, by_loss] : ends_by_loss) {
     StageBench bench(*stage, kCount, 1000);
     const Outcome out = bench.run();
     SCOPED_TRACE(stage->options().front().second);
     EXPECT_EQ(out.stop, Stop::converged);
     EXPECT_TRUE(Comparator(0, 1e-4)(out.x, bench.oracle.data().x));
     EXPECT_LT(bench.loss(out.x).maxCoeff(), 1e-8);
-    for (const Status s : out.status) EXPECT_EQ(s, Status::gtol);
+    EXPECT_EQ(std::ranges::count(out.status, Status::ftol), by_loss);
+    EXPECT_EQ(std::ranges::count(out.status, Status::gtol), kCount - by_loss);
   }
 }
 
