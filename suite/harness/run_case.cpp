@@ -142,6 +142,8 @@ void run_case(const Case& c,
         };
         try {
           run();
+        } catch (const StageLeft&) {
+          throw;
         } catch (...) {
           // A state that leads nowhere would do so every time.
           if (!checkpoint.restored()) throw;

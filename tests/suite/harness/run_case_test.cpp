@@ -15,6 +15,7 @@
 #include "suite/harness/registry.h"
 #include "suite/harness/sources.h"
 #include "suite/harness/verify.h"
+#include "suite/store/stage_state.h"
 #include "tests/suite/harness/fake_experiment.h"
 #include "tests/support/float_control.h"
 
@@ -274,6 +275,7 @@ TEST_F(RunCase, IsLeftWithItsStateLaidDown) {
   const auto store =
       std::filesystem::path(testing::TempDir()) / "physinv_left_case";
   std::filesystem::remove_all(store);
+  std::filesystem::create_directory(store);
   const Case c = make("descend");
   const auto whole = run(c);
   RunOptions options{.trace = true, .revision = "r"};
@@ -287,6 +289,7 @@ TEST_F(RunCase, IsLeftWithItsStateLaidDown) {
   for (int start = 0; start < 3; ++start)
     EXPECT_THROW(run_case(c, {}, options, nullptr, count), StageLeft);
   EXPECT_EQ(finished, 0U);
+  EXPECT_EQ(read_state(store, c.info.keys.front())->iteration, 3);
   options.checkpoints.leaving = nullptr;
   std::vector<StageRecord> records;
   run_case(c,
