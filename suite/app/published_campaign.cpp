@@ -86,6 +86,9 @@ StageRecord stage_of(const Json& entry) {
   stage.revision = own.value("revision", "");
   stage.finished = own.value("finished", "");
   stage.run.threads = entry.value("threads", 0);
+  const Json run = own.value("timed_on", Json());
+  if (run.is_object())
+    stage.run.thread_changes = run.value("thread_changes", "");
   add_times(stage, entry);
   stage.counts = counts_from_json(own.value("counts", Json()));
   add_statuses(stage, own);

@@ -57,6 +57,10 @@ struct RunFlags {
         {"--threads",
          "threads inside a case (default 1); results do not change",
          &campaign.threads},
+        {"--share-cores",
+         "once no case waits, give free cores to running cases: a stage that "
+         "saves checkpoints goes on in more threads; results do not change",
+         &campaign.share_cores},
         {"--time-budget",
          "wall time of the run, such as 10m: all methods on one seed first, "
          "then more seeds where the ranking is undecided; cases that would "
@@ -98,6 +102,10 @@ struct RunFlags {
     if (jobs == 0) jobs = std::max(1, available_cores() / campaign.threads);
     campaign.jobs = jobs;
     benchmark.complete(selection);
+    if (campaign.share_cores && benchmark.repetitions > 1)
+      throw UsageError(
+          "--benchmark_repetitions times stages whose threads --share-cores "
+          "changes; use one of the two");
     if (!budget.empty())
       campaign.time_budget = parse_duration("--time-budget", budget);
     if (!checkpoint.empty())
@@ -118,6 +126,7 @@ struct RunFlags {
             {"cases", one_line(selection.list)},
             {"jobs", campaign.jobs},
             {"threads", campaign.threads},
+            {"share_cores", campaign.share_cores},
             {"time_budget", campaign.time_budget},
             {"resume", campaign.resume},
             {"trace", campaign.trace},

@@ -24,6 +24,7 @@ struct SubmitFlags {
   Selection selection;
   std::string directory;
   int tasks = 16, jobs = 1, threads = 1;
+  bool share_cores = false;
 };
 
 std::vector<std::string> flags_of(const Selection& s) {
@@ -98,6 +99,7 @@ Submission written(const SubmitFlags& flags,
                .jobs = {},
                .merges_after = {},
                .listed = !flags.selection.list.empty()};
+  if (flags.share_cores) s.running.emplace_back("--share-cores");
   require_expressible(s.directory);
   make_directory(s.directory);
   s.write();
@@ -211,7 +213,11 @@ ExitCode submit_verb(const Arguments& arguments) {
                    &flags.jobs},
                   {"--threads",
                    "threads inside a case (default 1)",
-                   &flags.threads}}),
+                   &flags.threads},
+                  {"--share-cores",
+                   "once no case of a task waits, give its free cores to its "
+                   "running cases, as in run",
+                   &flags.share_cores}}),
              own))
     return ExitCode::good;
   if (flags.directory.empty())

@@ -57,7 +57,9 @@ Cell beside_printed(Cell cell,
 
 std::optional<double> TimedStages::seconds(const StageRecord& stage) {
   ++stages_;
-  crowded_ += stage.crowded;
+  const bool changed = !stage.run.thread_changes.empty();
+  changed_ += changed;
+  crowded_ += stage.crowded && !changed;
   return seconds_to_tell(stage);
 }
 
@@ -69,6 +71,12 @@ std::string TimedStages::note() const {
         " {} of {} stages shared their cores (crowded); those with several "
         "threads are left out.",
         crowded_,
+        stages_);
+  if (changed_ > 0)
+    text += fmt::format(
+        " {} of {} stages changed their number of threads; their times are CPU "
+        "times.",
+        changed_,
         stages_);
   return text;
 }

@@ -39,7 +39,7 @@ Cell beside_printed(Cell cell,
                     const std::string& quantity);
 
 /// Which stages a table of times is of. Its note says which clock they are from
-/// and how many were crowded.
+/// and how many were crowded or changed their threads.
 class TimedStages {
  public:
   /// What solving took, if that can be told (suite/results/crowded.h).
@@ -47,7 +47,7 @@ class TimedStages {
   std::string note() const;
 
  private:
-  int stages_ = 0, crowded_ = 0;
+  int stages_ = 0, crowded_ = 0, changed_ = 0;
 };
 
 }  // namespace physinv

@@ -6,10 +6,12 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "suite/core/clock.h"
 #include "suite/harness/columns.h"
 #include "suite/harness/context.h"
+#include "suite/harness/core_shares.h"
 #include "suite/harness/keys.h"
 #include "suite/harness/progress.h"
 #include "suite/harness/revision.h"
@@ -65,7 +67,8 @@ class Campaign {
         revision_(git_revision()),
         store_(options.out, {.break_lock = options.break_lock}),
         progress_(screen, cases_, options.jobs),
-        still_(options.still_seconds) {
+        still_(options.still_seconds),
+        shares_(options.jobs * options.threads, options.share_seconds) {
     data_cpu_ = result_.data_cpu = prepared.data_cpu;
     context_ = machine_context(revision_);
     context_["options"] = options_json;
@@ -171,11 +174,12 @@ class Campaign {
   void work() {
     const auto count = std::min<std::size_t>(
         static_cast<std::size_t>(options_.jobs), queue_.size());
+    const int used =
+        options_.share_cores ? options_.jobs : static_cast<int>(count);
     Workers workers(cases_,
                     count,
                     options_.threads,
-                    {.crowded = static_cast<int>(count) * options_.threads >
-                                available_cores(),
+                    {.crowded = used * options_.threads > available_cores(),
                      .trace = options_.trace,
                      .disturb = options_.disturb,
                      .revision = revision_,
@@ -190,6 +194,8 @@ class Campaign {
       if (store_.is_due(std::min(kCommitSeconds, options_.checkpoint_seconds)))
         store_.commit();
       for (auto& event : workers.wait(0.1)) handle(event);
+      resume_left(workers);
+      share_cores(workers);
       name_still(workers);
       progress_.draw();
     }
@@ -257,9 +263,63 @@ class Campaign {
       }
       running_[w] = i;
       positions_[w] = static_cast<Index>(earlier.size());
-      workers.submit(w, i, earlier);
-      still_.moved(w, now().wall);
+      submit(workers, w, earlier, options_.threads);
     }
+  }
+
+  /// The worker's case from here on.
+  void submit(Workers& workers,
+              std::size_t w,
+              const std::vector<StageRecord>& earlier,
+              int threads) {
+    iterations_[w] = 0;
+    shares_.submitted(w, threads);
+    workers.submit(w, running_[w], earlier, threads);
+    still_.moved(w, now().wall);
+  }
+
+  /// Does a case wait for a core?
+  bool some_wait() const {
+    return !out_of_time() &&
+           std::any_of(queue_.begin(), queue_.end(), [&](std::size_t i) {
+             return fits(i);
+           });
+  }
+
+  /// Asks stages to save their state and leave, where cores are free for them.
+  void share_cores(Workers& workers) {
+    if (!options_.share_cores || some_wait()) return;
+    for (const auto& [w, i] : running_) shares_.set_work_left(w, work_left(w));
+    for (const std::size_t w : shares_.to_ask(now().wall))
+      workers.ask_to_leave(w);
+  }
+
+  /// Cases that were left go on, in as many threads as there are cores for.
+  void resume_left(Workers& workers) {
+    for (const std::size_t w : std::exchange(left_, {})) {
+      const std::size_t i = running_[w];
+      const int threads = shares_.threads_for(w, now().wall);
+      find_state(
+          i,
+          positions_[w],
+          fmt::format("going on with {{}} {{}} from iteration {{}} in {} "
+                      "threads",
+                      threads));
+      submit(workers, w, take_stored(i), threads);
+    }
+  }
+
+  /// Declared operations of what is left of a worker's case.
+  double work_left(std::size_t w) const {
+    const Case& c = cases_[running_.at(w)];
+    const auto at = static_cast<std::size_t>(positions_.at(w));
+    const std::size_t stages = c.info.stages.size();
+    if (at >= stages) return 0;
+    double left = 0;
+    for (std::size_t k = at; k < stages; ++k) left += c.operations(k);
+    const auto all = static_cast<double>(c.stage_iterations[at]);
+    const auto done = static_cast<double>(iterations_.at(w));
+    return left - c.operations(at) * done / std::max(all, 1.0);
   }
 
   /// Two cases with the same first stages do not run them at the same time.
@@ -275,9 +335,13 @@ class Campaign {
     switch (event.kind) {
       case Kind::stage_started:
         positions_[event.worker] = event.position;
+        iterations_[event.worker] = 0;
+        if (!stays_.contains(event.case_index))
+          shares_.started(event.worker, now().wall);
         progress_.started(event.worker, event.case_index, event.position);
         break;
       case Kind::progress:
+        iterations_[event.worker] = event.iteration;
         progress_.report(event.worker, event.iteration, event.loss);
         break;
       case Kind::stage_done:
@@ -287,13 +351,15 @@ class Campaign {
         break;
       case Kind::case_done:
         overhead_ += event.overhead;
-        running_.erase(event.worker);
-        still_.idle(event.worker);
+        end_case(event.worker);
+        break;
+      case Kind::left:
+        left_.push_back(event.worker);
         break;
       case Kind::died:
         progress_.idle(event.worker);
-        running_.erase(event.worker);
-        still_.idle(event.worker);
+        end_case(event.worker);
+        stays_.insert(event.case_index);  // more threads take more memory
         if (stop_signals() != 0) {
           queue_.push_back(event.case_index);
         } else if (starts_again(event)) {
@@ -305,6 +371,12 @@ class Campaign {
         }
         break;
     }
+  }
+
+  void end_case(std::size_t worker) {
+    running_.erase(worker);
+    still_.idle(worker);
+    shares_.ended(worker);
   }
 
   /// A worker that waits for what never comes is not waited for in silence.
@@ -344,7 +416,9 @@ class Campaign {
   }
 
   void keep(std::size_t i, StageRecord& record) {
+    std::string changes = std::move(record.run.thread_changes);
     record.run = run_context(i);
+    record.run.thread_changes = std::move(changes);
     store_.add(cases_[i].info, data_[i], record);
     counted_.insert({i, static_cast<std::size_t>(record.position)});
     ++result_.stages_run;
@@ -439,11 +513,15 @@ class Campaign {
   Store store_;
   Progress progress_;
   Standstill still_;
+  CoreShares shares_;
   nlohmann::json context_;
   CampaignResult result_;
   std::vector<std::size_t> queue_;              // cases not handed out yet
   std::map<std::size_t, std::size_t> running_;  // worker -> case
   std::map<std::size_t, Index> positions_;      // worker -> stage
+  std::map<std::size_t, Index> iterations_;     // worker -> done of the stage
+  std::vector<std::size_t> left_;               // workers whose case was left
+  std::set<std::size_t> stays_;                 // cases that keep their threads
   std::map<std::size_t, Index> restored_;       // case -> stage with a state
   std::set<std::pair<std::size_t, std::size_t>> counted_;  // reused stages
   std::map<std::size_t, int> tries_;        // of cases whose worker was killed

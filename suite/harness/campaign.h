@@ -35,6 +35,11 @@ struct CampaignOptions {
   /// holds of these cases, and of no other, is deleted first.
   bool resume = true;
   bool trace = false;  ///< record hashes of all iterates
+  /// Once no case waits, give free cores (of jobs x threads) to running cases:
+  /// stages that save their state go on in more threads.
+  bool share_cores = false;
+  /// Seconds that a case runs before it is asked for that.
+  double share_seconds = 5;
   /// Seconds between the states that a stage under way lays down.
   double checkpoint_seconds = 60;
   /// Seconds after which a worker is named that tells nothing and computes

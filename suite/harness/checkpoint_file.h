@@ -5,23 +5,36 @@
 
 #include "suite/core/checkpoint.h"
 #include "suite/store/record.h"
+#include "suite/store/thread_log.h"
 
 namespace physinv {
+
+/// Whether a stage is to end where it saves its state.
+enum class Leaving {
+  no,
+  if_saved,  ///< to go on elsewhere
+  now        ///< even if the state cannot be saved
+};
 
 struct CheckpointOptions {
   std::filesystem::path store;  ///< empty: no checkpoints
   double seconds = 0;           ///< between two of a stage
-  /// True: a stage saves its state as soon as it can, and ends there.
-  bool (*leaving)() = nullptr;
+  /// Other than `no`: a stage saves its state as soon as it can, and ends
+  /// there.
+  Leaving (*leaving)() = nullptr;
+
+  Leaving asked() const { return leaving == nullptr ? Leaving::no : leaving(); }
 };
 
-/// A stage was left where it saved its state.
+/// A stage was left where it saved its state, or before it began.
 struct StageLeft {};
 
 class CheckpointFile final : public Checkpoint {
  public:
-  /// Of the stage whose record this will be.
-  CheckpointFile(const CheckpointOptions& options, const StageRecord& stage);
+  /// Of the stage whose record this will be, in so many threads.
+  CheckpointFile(const CheckpointOptions& options,
+                 const StageRecord& stage,
+                 int threads);
 
   /// What is damaged goes: the stage starts again.
   std::optional<Archive> last() override;
@@ -30,18 +43,19 @@ class CheckpointFile final : public Checkpoint {
   /// The stage cannot go on from there.
   void drop();
   bool due() override;
+  /// Since the stage began, whoever ran it.
+  const ThreadLog& threads() const { return log_; }
   /// A disk that is full costs the checkpoint, not the stage. Throws StageLeft
   /// where the stage is to be left.
   void save(Index iteration, const Archive& state) override;
 
  private:
-  std::filesystem::path store_;
-  double seconds_, last_;
-  bool (*leaving_)();
-  bool restored_ = false, dropped_ = false;
+  const CheckpointOptions& options_;
   const StageRecord& stage_;
-
-  bool leaving() const { return leaving_ != nullptr && leaving_(); }
+  int threads_;
+  double last_;
+  ThreadLog log_;
+  bool restored_ = false, dropped_ = false, fails_ = false;
 };
 
 }  // namespace physinv

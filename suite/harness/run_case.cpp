@@ -116,6 +116,7 @@ void run_case(const Case& c,
   disturb_data(options.disturb ? std::optional(working_precision(c))
                                : std::nullopt);
   const auto stages = static_cast<Index>(c.method->chain.size());
+  const int count = threads == nullptr ? 1 : threads->count();
   auto position = static_cast<Index>(earlier.size());
   std::optional<Outcome> previous;
   if (!earlier.empty()) previous = as_outcome(std::move(earlier.back()));
@@ -129,7 +130,7 @@ void run_case(const Case& c,
       if (hooks.started) hooks.started(position);
       try {
         record = blank(c, position, options.revision);
-        CheckpointFile checkpoint(options.checkpoints, record);
+        CheckpointFile checkpoint(options.checkpoints, record, count);
         const auto run = [&] {
           run_stage(c,
                     static_cast<std::size_t>(position),
@@ -151,8 +152,12 @@ void run_case(const Case& c,
           record = blank(c, position, options.revision);
           run();
         }
-        record.crowded =
-            options.crowded || shared_its_core(record.clocks.solve);
+        record.run.thread_changes =
+            changes_text(checkpoint.threads(),
+                         options.threads > 0 ? options.threads : count);
+        record.crowded = options.crowded ||
+                         !record.run.thread_changes.empty() ||
+                         shared_its_core(record.clocks.solve);
         record.finished = utc_now();
       } catch (const StageLeft&) {
         throw;
@@ -165,6 +170,9 @@ void run_case(const Case& c,
       }
     }
     if (hooks.finished) hooks.finished(record);
+    const bool goes_on = failed.empty() && position + 1 < stages;
+    if (goes_on && options.checkpoints.asked() != Leaving::no)
+      throw StageLeft();
   }
 }
 

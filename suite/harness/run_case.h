@@ -13,6 +13,9 @@
 namespace physinv {
 
 struct RunOptions {
+  /// Threads that a case of the campaign has: a stage that ran with others is
+  /// marked. 0: any number is right.
+  int threads = 0;
   bool crowded = false;  ///< every stage: more workers x threads than cores
   bool trace = false;    ///< hash every iterate
   bool disturb = false;  ///< data one ulp off, see `disturb_data`
@@ -36,7 +39,8 @@ struct CaseHooks {
 /// Every random stream comes from hash(experiment, seed); the stream
 /// `method/<id>` has the content of the chain up to the stage as its id, so
 /// that chains sharing a beginning share its results. Throws StageLeft where
-/// options.checkpoints says so.
+/// options.checkpoints says so: in a stage that saved its state, or between
+/// two.
 void run_case(const Case& c,
               std::vector<StageRecord> earlier,
               const RunOptions& options,

@@ -12,6 +12,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <system_error>
 
 #include "suite/core/clock.h"
 #include "suite/core/float_environment.h"
@@ -21,7 +22,7 @@
 namespace physinv {
 namespace {
 
-constexpr int kDismissal = SIGUSR1;
+constexpr int kDismissal = SIGUSR1, kLeaveAsked = SIGUSR2;
 
 enum Kind : std::uint32_t {
   kRun,
@@ -29,19 +30,40 @@ enum Kind : std::uint32_t {
   kProgress,
   kStageDone,
   kCaseDone,
+  kCaseLeft,
   kCannotStart
 };
+
+/// Set by the signals that dismiss a worker and ask it to leave a case.
+volatile std::sig_atomic_t dismissed = 0, leave_asked = 0;
+
+Leaving asked() {
+  return dismissed != 0     ? Leaving::now
+         : leave_asked != 0 ? Leaving::if_saved
+                            : Leaving::no;
+}
+
+/// If not all can start, a case goes on with those that there are.
+void set_count(std::unique_ptr<Threads>& threads, int count) {
+  if (threads->count() == count) return;
+  try {
+    threads = std::make_unique<Threads>(count);
+  } catch (const std::system_error&) {
+  }
+}
 
 /// The worker's side: cases in, stages out, until the parent closes.
 void serve(int socket,
            const std::vector<Case>& cases,
-           Threads& threads,
+           std::unique_ptr<Threads> threads,
            const RunOptions& options) {
   while (const auto message = receive_message(socket)) {
+    leave_asked = 0;  // it was for the case before
     const double begin = now().cpu;
     double in_stages = 0;
     BodyReader body(message->body);
     const auto index = body.get<std::uint64_t>();
+    set_count(threads, body.get<int>());
     std::vector<StageRecord> earlier(body.get<std::uint64_t>());
     for (auto& record : earlier) record = from_wire(body.bytes());
     const CaseHooks hooks{
@@ -61,7 +83,13 @@ void serve(int socket,
               in_stages += record.clocks.total().cpu;
               send_message(socket, kStageDone, to_wire(record));
             }};
-    run_case(cases[index], std::move(earlier), options, &threads, hooks);
+    try {
+      run_case(cases[index], std::move(earlier), options, threads.get(), hooks);
+    } catch (const StageLeft&) {
+      if (dismissed != 0) throw;
+      send_message(socket, kCaseLeft, {});
+      continue;
+    }
     // What a stage was restored with counts as its own, but not as ours.
     const double overhead = std::max(0.0, now().cpu - begin - in_stages);
     send_message(socket, kCaseDone, BodyWriter().put(overhead).take());
@@ -81,9 +109,6 @@ std::unique_ptr<Threads> start_threads(int socket, int count) {
   }
 }
 
-/// Set by the signal that dismisses a worker.
-volatile std::sig_atomic_t dismissed = 0;
-
 /// SIGINT and SIGTERM are the parent's to handle, and its files its own.
 void become_worker(int socket, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -94,6 +119,8 @@ void become_worker(int socket, pid_t parent) {
   action.sa_handler = [](int) { dismissed = 1; };
   action.sa_flags = SA_RESTART;
   sigaction(kDismissal, &action, nullptr);
+  action.sa_handler = [](int) { leave_asked = 1; };
+  sigaction(kLeaveAsked, &action, nullptr);
   const auto s = static_cast<unsigned>(socket);
   if (s > 3) close_range(3, s - 1, 0);
   close_range(s + 1, ~0U, 0);
@@ -116,6 +143,9 @@ WorkerEvent decode(const Message& message) {
       event.kind = WorkerEvent::Kind::stage_done;
       event.record = from_wire(message.body);
       event.position = event.record.position;
+      break;
+    case kCaseLeft:
+      event.kind = WorkerEvent::Kind::left;
       break;
     case kCannotStart:
       throw EnvironmentError(fmt::format(
@@ -150,7 +180,8 @@ Workers::Workers(const std::vector<Case>& cases,
       threads_(threads),
       options_(std::move(options)),
       workers_(count) {
-  options_.checkpoints.leaving = [] { return dismissed != 0; };
+  options_.threads = threads;
+  options_.checkpoints.leaving = asked;
   try {
     for (Worker& worker : workers_) start(worker);
   } catch (...) {
@@ -186,8 +217,7 @@ void Workers::start(Worker& worker) {
     become_worker(pair[1], parent);
     set_default_float_environment();  // of its threads, too
     try {
-      const auto threads = start_threads(pair[1], threads_);
-      serve(pair[1], cases_, *threads, options_);
+      serve(pair[1], cases_, start_threads(pair[1], threads_), options_);
     } catch (const StageLeft&) {
     } catch (...) {
       _exit(static_cast<int>(ExitCode::internal));
@@ -211,6 +241,10 @@ int Workers::collect(Worker& worker) {
   return status;
 }
 
+void Workers::ask_to_leave(std::size_t worker) {
+  if (workers_[worker].pid > 0) kill(workers_[worker].pid, kLeaveAsked);
+}
+
 void Workers::dismiss() {
   dismissed_ = true;
   for (const Worker& worker : workers_)
@@ -225,9 +259,11 @@ bool Workers::busy() const {
 
 void Workers::submit(std::size_t worker,
                      std::size_t case_index,
-                     const std::vector<StageRecord>& earlier) {
+                     const std::vector<StageRecord>& earlier,
+                     int threads) {
   BodyWriter body;
   body.put(static_cast<std::uint64_t>(case_index));
+  body.put(threads);
   body.put(static_cast<std::uint64_t>(earlier.size()));
   for (const auto& record : earlier) body.bytes(to_wire(record));
   Worker& w = workers_[worker];
@@ -251,7 +287,9 @@ std::vector<WorkerEvent> Workers::wait(double seconds) {
       WorkerEvent event = decode(*message);
       event.worker = i;
       event.case_index = w.case_index;
-      if (event.kind == WorkerEvent::Kind::case_done) w.busy = false;
+      if (event.kind == WorkerEvent::Kind::case_done ||
+          event.kind == WorkerEvent::Kind::left)
+        w.busy = false;
       events.push_back(std::move(event));
     }
     if (alive) continue;

@@ -16,7 +16,14 @@ namespace physinv {
 
 /// What a worker tells.
 struct WorkerEvent {
-  enum class Kind { stage_started, progress, stage_done, case_done, died };
+  enum class Kind {
+    stage_started,
+    progress,
+    stage_done,
+    case_done,
+    left,  ///< as `ask_to_leave` asked; submitted again, the case goes on
+    died
+  };
   Kind kind{};
   std::size_t worker = 0, case_index = 0;
   Index position = 0;    ///< of the stage
@@ -46,11 +53,16 @@ class Workers {
   bool idle(std::size_t worker) const { return !workers_[worker].busy; }
   pid_t process(std::size_t worker) const { return workers_[worker].pid; }
 
-  /// Hands a case to an idle worker; `earlier` are the stages it need not run.
+  /// Hands a case to an idle worker, to run in so many threads, or in those it
+  /// has if they cannot all start; `earlier` are the stages it need not run.
   void submit(std::size_t worker,
               std::size_t case_index,
-              const std::vector<StageRecord>& earlier);
+              const std::vector<StageRecord>& earlier,
+              int threads);
 
+  /// A worker that has started a stage leaves its case as soon as a stage has
+  /// saved its state or ended; never, if none does.
+  void ask_to_leave(std::size_t worker);
   /// Stages under way lay their state down where they can, and their workers
   /// leave: they die, and none takes their place.
   void dismiss();

@@ -10,9 +10,9 @@ std::string crowded_text(const std::vector<CaseRecord>& cases) {
     for (const StageRecord& s : c.stages) ++all, crowded += s.crowded;
   if (crowded == 0) return "";
   return fmt::format(
-      "{} of {} stages were crowded (wall time above {} times CPU time, or "
-      "more workers x threads than cores): their wall times are too long, "
-      "so tables use CPU time",
+      "{} of {} stages were crowded (wall time above {} times CPU time, more "
+      "workers x threads than cores, or threads that changed): their wall "
+      "times measure no speed, so tables use CPU time",
       crowded,
       all,
       kCrowdedFactor);

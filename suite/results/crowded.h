@@ -32,10 +32,11 @@ inline bool is_crowded(const StageRecord& stage) {
 
 /// Seconds of solving as tables tell them, the median of repetitions: CPU time
 /// where no more than one core was at work, as others on the machine add little
-/// to it; else wall time, and nothing of a stage of several threads that was
-/// crowded.
+/// to it, and where the number of threads changed; else wall time, and nothing
+/// of a stage of several threads that was crowded.
 inline std::optional<double> seconds_to_tell(const StageRecord& stage) {
   const auto [wall, cpu] = solving_time(stage);
+  if (!stage.run.thread_changes.empty()) return cpu;
   if (cpu <= wall + kClockResolution) return std::min(wall, cpu);
   if (stage.crowded) return {};
   return wall;

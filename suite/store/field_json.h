@@ -22,7 +22,10 @@ nlohmann::json to_json(const Counts& counts);
 template <HasFields Record>
 nlohmann::json to_object(const Record& record) {
   auto object = nlohmann::json::object();
-  const auto add = [&]<class T>(const char* name, const T& value, bool = {}) {
+  const auto add = [&]<class T>(
+                       const char* name, const T& value, bool optional = {}) {
+    if constexpr (requires { value.empty(); })
+      if (optional && value.empty()) return;
     if constexpr (HasFields<T>) {
       object[name] = to_object(value);
     } else if constexpr (std::is_enum_v<T>) {

@@ -39,7 +39,7 @@ template <class T, class Record>
 concept MaybeConst = std::same_as<std::remove_const_t<T>, Record>;
 
 /// Calls f(name, member) for each; f(name, member, true) where records of older
-/// versions may lack it.
+/// versions may lack it; an empty text or list of these is not written.
 template <class F>
 void each_field(MaybeConst<RunContext> auto& run, F&& f) {
   f("profile", run.profile);
@@ -48,6 +48,7 @@ void each_field(MaybeConst<RunContext> auto& run, F&& f) {
   f("instruction_set", run.instruction_set);
   f("threads", run.threads);
   f("jobs", run.jobs);
+  f("thread_changes", run.thread_changes, true);
 }
 
 template <class F>

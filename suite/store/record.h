@@ -49,6 +49,9 @@ struct RunContext {
   std::string profile;  ///< quick; empty in records of older versions
   std::string host, processor, instruction_set;
   int threads = 0, jobs = 0;  ///< 0: not known
+  /// Where the stage ran with other threads: "2 from iteration 340"
+  /// (thread_log.h).
+  std::string thread_changes = {};
   bool operator==(const RunContext&) const = default;
 };
 
@@ -65,7 +68,7 @@ struct StageRecord {
   Counts counts;
   std::uint64_t buffer_bytes = 0;  ///< peak bytes of the stage's buffers
   std::uint64_t rss_bytes = 0;     ///< peak resident set of its process
-  bool crowded = false;    ///< others had its cores as well (crowded.h tells)
+  bool crowded = false;    ///< wall times measure no speed (crowded.h tells)
   std::string finished;    ///< UTC date and time, ISO 8601
   std::string revision;    ///< git revision it ran from, "+dirty" if so
   std::string trajectory;  ///< hash of all iterates, if traced

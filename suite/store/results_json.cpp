@@ -52,11 +52,14 @@ Json statuses(const std::vector<Status>& status) {
 
 Json run_context(const RunContext& run) {
   if (run.threads == 0) return nullptr;
-  return {{"host_name", run.host},
-          {"cpu_model", run.processor},
-          {"instruction_set", run.instruction_set},
-          {"threads", run.threads},
-          {"jobs", run.jobs}};
+  Json context{{"host_name", run.host},
+               {"cpu_model", run.processor},
+               {"instruction_set", run.instruction_set},
+               {"threads", run.threads},
+               {"jobs", run.jobs}};
+  if (!run.thread_changes.empty())
+    context["thread_changes"] = run.thread_changes;
+  return context;
 }
 
 Json times(const StageRecord& s) {

@@ -14,6 +14,7 @@ void each_field(MaybeConst<StageState> auto& state, F&& f) {
   f("case", state.case_name);
   f("stage", state.stage);
   f("iteration", state.iteration);
+  f("threads", state.threads, true);
 }
 
 namespace {
@@ -41,6 +42,7 @@ StageState parsed(std::string_view text) {
   if (end == std::string_view::npos) throw std::runtime_error("no header");
   auto state = from_object<StageState>(parse_json(text.substr(0, end)));
   if (state.iteration < 0) throw std::runtime_error("no iteration");
+  if (!is_thread_log(state.threads)) throw std::runtime_error("no threads");
   state.bytes = text.substr(end + 1);
   return state;
 }

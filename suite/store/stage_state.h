@@ -12,13 +12,15 @@
 #include <string_view>
 
 #include "suite/core/batch.h"
+#include "suite/store/thread_log.h"
 
 namespace physinv {
 
 struct StageState {
   std::string case_name, stage;
   Index iteration = 0;
-  std::string bytes;  ///< as the stage's Archive has them
+  std::string bytes;       ///< as the stage's Archive has them
+  ThreadLog threads = {};  ///< that it ran with until there
 };
 
 /// On disk when it returns, in place of what was there.

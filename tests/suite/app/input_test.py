@@ -132,6 +132,8 @@ def switches_and_numbers(d):
         expect(2, ["--jobs=" + number, "--dry-run"], d,
                "is no whole number from 1 to 1024")
         expect(2, ["--benchmark_repetitions=" + number, "--dry-run"], d)
+    expect(2, ["--benchmark_repetitions=2", "--share-cores", "--dry-run"], d,
+           "use one of the two")
     for number in ("nan", "inf", "-1", "0", "1e999", "0x10", "1,5", "one"):
         expect(2, ["gate", "--against=x", "--budget=" + number], d,
                "is not positive and finite")

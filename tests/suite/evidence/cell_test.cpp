@@ -34,6 +34,20 @@ TEST(Cell, AMeasuredNumberHasItsSpread) {
   EXPECT_EQ(cell_of(missing("three seeds")).text, "not run");
 }
 
+TEST(Cell, OfChangedThreadsTheCpuTimeIsTold) {
+  StageRecord stage;
+  stage.clocks.solve = {1, 1.9};
+  stage.crowded = true;
+  TimedStages times;
+  EXPECT_FALSE(times.seconds(stage));
+  stage.run.thread_changes = "2 from iteration 340";
+  EXPECT_EQ(times.seconds(stage), 1.9);
+  EXPECT_NE(times.note().find("1 of 2 stages shared their cores"),
+            std::string::npos);
+  EXPECT_NE(times.note().find("1 of 2 stages changed their number of threads"),
+            std::string::npos);
+}
+
 TEST(Cell, StandsBesideWhatIsPrinted) {
   Published published;
   published.add(R"({"publication": {"key": "toy", "title": "Toy",

@@ -1,11 +1,15 @@
 #include "suite/harness/campaign.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include "suite/harness/registry.h"
 #include "suite/harness/select.h"
@@ -46,6 +50,12 @@ class CampaignTest : public ::testing::Test {
     options.trace = true;
     return run_campaign(
         prepare(std::move(cases)), options, {}, {.stream = sink_});
+  }
+
+  /// More cores than cases; every stage that can leaves its worker.
+  CampaignOptions sharing(const char* out) const {
+    return {
+        .out = root_ / out, .jobs = 9, .share_cores = true, .share_seconds = 0};
   }
 
   /// Everything that must not depend on how a campaign is run.
@@ -112,6 +122,91 @@ TEST_F(CampaignTest, AWorkerThatStandsStillIsNamed) {
                       "0.3 s neither a step"),
             std::string::npos)
       << text;
+}
+
+TEST_F(CampaignTest, FreeCoresGoToStagesThatSaveTheirState) {
+  const char* two = "/(descend|walk)/";
+  run("smoke", {.out = root_ / "a", .jobs = 2}, false, two);
+  setenv("PHYSINV_FAKE_PACE_MS", "40", 1);
+  run("smoke", sharing("b"), false, two);
+  unsetenv("PHYSINV_FAKE_PACE_MS");
+  EXPECT_EQ(bits(root_ / "a"), bits(root_ / "b"));
+  const Results with = load_results(root_ / "b");
+  const auto changes = [&](const char* method, const char* stage) {
+    return with.find("fake/cubic", method, 4, 0, stage)->run.thread_changes;
+  };
+  EXPECT_NE(changes("descend", "solve").find(" from iteration "),
+            std::string::npos);
+  // It saves no state; the stage after it has more threads from its start on.
+  EXPECT_EQ(changes("walk", "fit"), "");
+  EXPECT_NE(changes("walk", "refine").find(" from iteration 0"),
+            std::string::npos);
+  for (const auto& c : with.cases()) {
+    for (const auto& s : c.stages) {
+      EXPECT_EQ(s.run.threads, 1);
+      EXPECT_TRUE(s.crowded || s.run.thread_changes.empty());
+    }
+  }
+  const Results without = load_results(root_ / "a");
+  for (const auto& c : without.cases())
+    for (const auto& s : c.stages) EXPECT_EQ(s.run.thread_changes, "");
+}
+
+TEST_F(CampaignTest, ACaseThatCannotGoOnKeepsItsThreads) {
+  run("smoke", {.out = root_ / "a"}, false, "/descend/");
+  setenv("PHYSINV_FAKE_PACE_MS", "40", 1);
+  setenv("PHYSINV_FAKE_PLANT", "a crash when going on", 1);
+  const auto result = run("smoke", sharing("b"), false, "/descend/");
+  unsetenv("PHYSINV_FAKE_PLANT");
+  unsetenv("PHYSINV_FAKE_PACE_MS");
+  EXPECT_TRUE(result.failed.empty());
+  EXPECT_EQ(bits(root_ / "a"), bits(root_ / "b"));
+  const Results with = load_results(root_ / "b");
+  EXPECT_EQ(
+      with.find("fake/cubic", "descend", 4, 0, "solve")->run.thread_changes,
+      "");
+}
+
+/// Sends a signal to this process once a state in `folder` was saved in several
+/// threads; a process of its own, as workers are forked meanwhile.
+pid_t interrupt_when_shared(const fs::path& folder) {
+  const pid_t parent = getpid(), child = fork();
+  if (child != 0) return child;
+  for (int k = 0; k < 30000 && getppid() == parent; ++k) {
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folder, none)) {
+      std::ifstream file(entry.path());
+      std::string head;
+      std::getline(file, head);
+      if (head.find(",9]]") == std::string::npos) continue;
+      kill(parent, SIGINT);
+      _exit(0);
+    }
+    usleep(1000);
+  }
+  _exit(1);
+}
+
+TEST_F(CampaignTest, WhatWentOnInMoreThreadsIsResumed) {
+  run("smoke", {.out = root_ / "a"}, false, "/descend/");
+  setenv("PHYSINV_FAKE_PACE_MS", "40", 1);
+  const pid_t child = interrupt_when_shared(root_ / "b/checkpoints");
+  CampaignOptions options = sharing("b");
+  options.checkpoint_seconds = 1e-3;
+  const auto first = run("smoke", options, false, "/descend/");
+  unsetenv("PHYSINV_FAKE_PACE_MS");
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  EXPECT_TRUE(first.interrupted);
+  EXPECT_EQ(first.not_run.size(), 1U);
+  run("smoke", {.out = root_ / "b"}, false, "/descend/");
+  EXPECT_EQ(bits(root_ / "a"), bits(root_ / "b"));
+  const Results with = load_results(root_ / "b");
+  const auto changes =
+      with.find("fake/cubic", "descend", 4, 0, "solve")->run.thread_changes;
+  EXPECT_EQ(changes.find("9 from iteration "), 0U) << changes;
+  EXPECT_NE(changes.find(", 1 from iteration "), std::string::npos) << changes;
 }
 
 TEST_F(CampaignTest, ReusesWhatIsFinished) {

@@ -15,6 +15,7 @@
 #include "suite/harness/registry.h"
 #include "suite/harness/sources.h"
 #include "suite/harness/verify.h"
+#include "suite/store/file.h"
 #include "suite/store/stage_state.h"
 #include "tests/suite/harness/fake_experiment.h"
 #include "tests/support/float_control.h"
@@ -280,7 +281,7 @@ TEST_F(RunCase, IsLeftWithItsStateLaidDown) {
   const auto whole = run(c);
   RunOptions options{.trace = true, .revision = "r"};
   options.checkpoints = {
-      .store = store, .seconds = 1e9, .leaving = [] { return true; }};
+      .store = store, .seconds = 1e9, .leaving = [] { return Leaving::now; }};
   std::size_t finished = 0;
   const CaseHooks count{.started = {},
                         .progress = {},
@@ -301,6 +302,63 @@ TEST_F(RunCase, IsLeftWithItsStateLaidDown) {
             }});
   ASSERT_EQ(records.size(), whole.size());
   expect_same(records.front(), whole.front());
+  std::filesystem::remove_all(store);
+}
+
+TEST_F(RunCase, GoesOnInOtherThreadsAndTellsSo) {
+  const auto store =
+      std::filesystem::path(testing::TempDir()) / "physinv_other_threads";
+  std::filesystem::remove_all(store);
+  std::filesystem::create_directory(store);
+  const Case c = make("walk");
+  const auto whole = run(c);
+  RunOptions options{.threads = 1, .trace = true, .revision = "r"};
+  options.checkpoints = {.store = store, .seconds = 1e9, .leaving = [] {
+                           return Leaving::if_saved;
+                         }};
+  std::vector<StageRecord> records;
+  const CaseHooks collect{
+      .started = {}, .progress = {}, .finished = [&](const auto& r) {
+        records.push_back(r);
+      }};
+  Threads one(1), two(2), three(3);
+  // The first stage saves nothing and is left at its end.
+  EXPECT_THROW(run_case(c, {}, options, &two, collect), StageLeft);
+  ASSERT_EQ(records.size(), 1U);
+  EXPECT_EQ(records[0].run.thread_changes, "2 from iteration 0");
+  EXPECT_TRUE(records[0].crowded);
+  for (Threads* threads : {&one, &three, &one})
+    EXPECT_THROW(run_case(c, {records[0]}, options, threads, collect),
+                 StageLeft);
+  options.checkpoints.leaving = nullptr;
+  run_case(c, {records[0]}, options, &one, collect);
+  ASSERT_EQ(records.size(), 2U);
+  EXPECT_EQ(records[1].run.thread_changes,
+            "3 from iteration 1, 1 from iteration 2");
+  for (std::size_t k = 0; k < 2; ++k) expect_same(records[k], whole[k]);
+  std::filesystem::remove_all(store);
+}
+
+TEST_F(RunCase, IsNotLeftWithoutItsState) {
+  const auto store =
+      std::filesystem::path(testing::TempDir()) / "physinv_no_folder";
+  std::filesystem::remove_all(store);
+  write_atomically(store, "a file where the folder would be");
+  const Case c = make("descend");
+  RunOptions options{.trace = true, .revision = "r"};
+  options.checkpoints = {.store = store, .seconds = 1e9, .leaving = [] {
+                           return Leaving::if_saved;
+                         }};
+  std::vector<StageRecord> records;
+  run_case(c,
+           {},
+           options,
+           nullptr,
+           {.started = {}, .progress = {}, .finished = [&](const auto& r) {
+              records.push_back(r);
+            }});
+  ASSERT_EQ(records.size(), 1U);
+  expect_same(records[0], run(c)[0]);
   std::filesystem::remove_all(store);
 }
 

@@ -32,7 +32,7 @@ TEST(Workers, ADeadWorkerIsNamedAndReplaced) {
   std::string death;
   std::size_t done = 0;
   for (std::size_t i = 0; i < prepared.cases.size(); ++i) {
-    workers.submit(0, i, {});
+    workers.submit(0, i, {}, 1);
     for (bool over = false; !over;) {
       for (const auto& event : workers.wait(5)) {
         if (event.kind == WorkerEvent::Kind::died) death = event.message;

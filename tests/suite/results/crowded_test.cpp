@@ -44,6 +44,13 @@ TEST(Crowded, SeveralThreadsTellWallTimeUnlessCrowded) {
   EXPECT_FALSE(seconds_to_tell(of({1, 1.9}, true)));
 }
 
+TEST(Crowded, ChangedThreadsTellCpuTime) {
+  StageRecord changed = of({1, 1.9}, true);
+  changed.run.thread_changes = "2 from iteration 340";
+  EXPECT_EQ(seconds_to_tell(changed), 1.9);
+  EXPECT_TRUE(is_crowded(changed));
+}
+
 TEST(Crowded, StagesAreCounted) {
   std::vector<CaseRecord> cases(2);
   cases[0].stages = {of({1, 1}), of({2, 1}, true)};

@@ -25,7 +25,8 @@ TEST(StageState, ComesBackOrIsNamedAsDamaged) {
   const std::string key = hex128("a stage");
   EXPECT_FALSE(read_state(out / "nowhere", key));
   EXPECT_FALSE(read_state(out.path(), key));
-  const StageState state{"a/case", "fit", 12, std::string("\0b\ny\0te", 7)};
+  const StageState state{
+      "a/case", "fit", 12, std::string("\0b\ny\0te", 7), {{0, 1}, {5, 3}}};
   write_state(out.path(), key, state);
   const auto back = read_state(out.path(), key);
   ASSERT_TRUE(back);
@@ -33,6 +34,7 @@ TEST(StageState, ComesBackOrIsNamedAsDamaged) {
   EXPECT_EQ(back->stage, state.stage);
   EXPECT_EQ(back->iteration, state.iteration);
   EXPECT_EQ(back->bytes, state.bytes);
+  EXPECT_EQ(back->threads, state.threads);
 
   const fs::path path = out / "checkpoints" / key;
   const auto bytes = read_file(path);

@@ -158,7 +158,8 @@ inline StageRecord sample_stage(const CaseInfo& info,
            .processor = "a processor",
            .instruction_set = "x86-64-v4",
            .threads = 2,
-           .jobs = 3};
+           .jobs = 3,
+           .thread_changes = "4 from iteration 20"};
   r.x = sample_batch(2, info.n, salt);
   r.loss = sample_batch(info.n, 1, salt + 1);
   r.loss(0) = std::numeric_limits<double>::quiet_NaN();
