@@ -33,7 +33,8 @@ std::string campaign_directory(const std::string& text) {
 Chosen chosen_of(const nlohmann::json& plan, const std::string& directory) {
   if (plan.value("fingerprint", "") != build_info().fingerprint)
     throw UsageError(fmt::format(
-        "'{}' was run by another build; run it with this one", directory));
+        "'{}' was run by another build; run it again with this build",
+        directory));
   const auto options =
       plan.at("context").value("options", nlohmann::json::object());
   return {.profile = plan.at("profile"),
@@ -48,8 +49,8 @@ void check_known(const Results& results) {
     const auto e = registry().find(c.info.experiment);
     if (e == nullptr || find_method(*e, c.info.method) == nullptr)
       throw UsageError(fmt::format(
-          "this program does not know {}; the one that ran it, with the same "
-          "plug-ins and methods, makes the baseline",
+          "this program does not have {}; write the baseline with the program "
+          "that ran it, with the same plug-ins and methods",
           c.info.name));
   }
 }
@@ -63,8 +64,8 @@ std::vector<CaseRecord> records_of(const Results& results,
                 [&](const auto& c) { return !names.contains(c.info.name); });
   if (records.size() < all)
     fmt::print(
-        "note: {} cases of earlier selections are left out; the last run there "
-        "did not ask for them\n",
+        "note: {} cases of earlier runs are left out; the last run did not "
+        "select them\n",
         all - records.size());
   return records;
 }
@@ -79,8 +80,9 @@ CountTable counts_of(const std::string& regex,
   for (const Case& c : NameFilter({regex}, "--count").apply(cases))
     names.push_back(c.info.name);
   if (names.empty())
-    throw ExitError(ExitCode::nothing_matched,
-                    fmt::format("--count={} matches no case there", regex));
+    throw ExitError(
+        ExitCode::nothing_matched,
+        fmt::format("--count={} matches no case of the campaign", regex));
   std::string why;
   const auto counting = find_counting(counting_program(), &why);
   if (!counting)

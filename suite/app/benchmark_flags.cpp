@@ -18,8 +18,8 @@ namespace {
 int whole(const char* name, const std::string& text, int least) {
   const auto value = decimal<int>(text);
   if (!value || *value < least || *value > 1'000'000)
-    throw UsageError(
-        fmt::format("{}={} is no whole number from {} on", name, text, least));
+    throw UsageError(fmt::format(
+        "{}={} is not a whole number of at least {}", name, text, least));
   return *value;
 }
 
@@ -30,7 +30,7 @@ void check(const char* flag,
   const std::string near = nearest_word(known, value);
   throw UsageError(
       near.empty()
-          ? fmt::format("{}={} is unknown; known are {}",
+          ? fmt::format("{}={} is unknown; known values: {}",
                         flag,
                         value,
                         fmt::join(known, ", "))
@@ -52,15 +52,15 @@ std::string shard_of_environment() {
   if (total.empty() && index.empty()) return "";
   if (total.empty() || index.empty())
     throw UsageError(
-        "GTEST_TOTAL_SHARDS and GTEST_SHARD_INDEX go together; one is not set");
+        "set both GTEST_TOTAL_SHARDS and GTEST_SHARD_INDEX; one is not set");
   const int parts = whole("GTEST_TOTAL_SHARDS", total, 1);
   const int part = whole("GTEST_SHARD_INDEX", index, 0);
   if (part >= parts)
-    throw UsageError(
-        fmt::format("GTEST_SHARD_INDEX={} is no shard of {}; 0 to {} are",
-                    part,
-                    parts,
-                    parts - 1));
+    throw UsageError(fmt::format(
+        "GTEST_SHARD_INDEX={} is out of range for {} shards; expected 0 to {}",
+        part,
+        parts,
+        parts - 1));
   if (const std::string file = variable("GTEST_SHARD_STATUS_FILE");
       !file.empty())
     touch(file);

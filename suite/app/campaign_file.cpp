@@ -20,7 +20,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kNoValue =
-    "is neither text, number, yes or no, nor a list of them";
+    "must be text, a number, a boolean or a list of these";
 
 std::string at_line(const std::string& path, std::size_t line) {
   return fmt::format("{}:{}", path, line);
@@ -60,7 +60,7 @@ Json parsed_json(const std::string& path,
     const auto& name = key.get_ref<const std::string&>();
     if (!lines.emplace(name, line).second)
       throw UsageError(
-          fmt::format("{}: '{}' stands twice", at_line(path, line), name));
+          fmt::format("{}: '{}' appears twice", at_line(path, line), name));
     return true;
   };
   const char* begin = text.data();
@@ -70,10 +70,11 @@ Json parsed_json(const std::string& path,
   } catch (const Json::exception& error) {
     const std::string_view what = error.what();
     const auto from = what.find("column ");
-    throw UsageError(fmt::format("{}: the file of --config is no JSON{}{}",
-                                 at_line(path, line),
-                                 from == what.npos ? "" : ": ",
-                                 from == what.npos ? "" : what.substr(from)));
+    throw UsageError(
+        fmt::format("{}: the file of --config is not valid JSON{}{}",
+                    at_line(path, line),
+                    from == what.npos ? "" : ": ",
+                    from == what.npos ? "" : what.substr(from)));
   }
 }
 
@@ -90,7 +91,7 @@ std::vector<FileFlag> from_json(const std::string& path,
   const Json all = parsed_json(path, text, lines);
   if (!all.is_object())
     throw UsageError(fmt::format(
-        "{} is no JSON object of flags, such as {{\"profile\": \"smoke\"}}",
+        "{} is not a JSON object of flags, such as {{\"profile\": \"smoke\"}}",
         path));
   std::vector<FileFlag> flags;
   for (const auto& [name, value] : all.items()) {
@@ -120,10 +121,11 @@ toml::table parsed_toml(const std::string& path, std::string_view text) {
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
-    throw UsageError(fmt::format("{}:{}: the file of --config is no TOML: {}",
-                                 path,
-                                 error.source().begin.line,
-                                 error.description()));
+    throw UsageError(
+        fmt::format("{}:{}: the file of --config is not valid TOML: {}",
+                    path,
+                    error.source().begin.line,
+                    error.description()));
   }
 }
 
@@ -167,7 +169,7 @@ void check_values(const FileFlag& flag) {
           "{}: --{}= {}; leave it out or give it a value",
           flag.where,
           flag.name,
-          value.empty() ? "is empty" : "holds a character of value 0"));
+          value.empty() ? "is empty" : "contains a null character"));
 }
 
 }  // namespace

@@ -85,9 +85,10 @@ std::vector<Side> read_sides(const CompareFlags& flags) {
   }
   if (sides.size() < 2)
     throw UsageError(
-        by_commit ? "all stages are of one commit; results of two are compared"
-                  : "one folder is no comparison; two or more are, or one of "
-                    "several commits with --by=commit");
+        by_commit
+            ? "all stages are from one commit; compare needs results of two"
+            : "compare needs two or more folders, or one folder with several "
+              "commits and --by=commit");
   return sides;
 }
 
@@ -96,7 +97,7 @@ By parse_by(const std::string& text) {
   if (text == "n") return By::n;
   if (text == "seed" || text == "commit") return By::seed;
   throw UsageError(fmt::format(
-      "--by={} is unknown; known are method, n, seed, commit", text));
+      "--by={} is unknown; known values: method, n, seed, commit", text));
 }
 
 std::vector<Aspect> parse_fail_on(const std::vector<std::string>& words) {
@@ -104,8 +105,8 @@ std::vector<Aspect> parse_fail_on(const std::vector<std::string>& words) {
   for (const auto& word : words) {
     const auto aspect = aspect_of(word);
     if (!aspect)
-      throw UsageError(
-          fmt::format("--fail-on={} is unknown; known are {}", word, kAspects));
+      throw UsageError(fmt::format(
+          "--fail-on={} is unknown; known values: {}", word, kAspects));
     all.push_back(*aspect);
   }
   return all;
@@ -159,7 +160,7 @@ void print_counts(const Comparison& own,
         });
       });
   if (changed.size() > judged)
-    fmt::print("{} claims are judged on one side and not on another\n",
+    fmt::print("{} claims are judged in one folder but not in another\n",
                changed.size() - judged);
   fmt::print("{}\n", pairs_text(own));
   fmt::print(
@@ -234,10 +235,9 @@ void write_pages(const CompareFlags& flags,
 void check_format(const CompareFlags& flags) {
   const std::vector<std::string> formats = {"text", "markdown", "csv", "json"};
   if (std::find(formats.begin(), formats.end(), flags.format) == formats.end())
-    throw UsageError(
-        fmt::format("--format={} is unknown; known are text, markdown, csv, "
-                    "json",
-                    flags.format));
+    throw UsageError(fmt::format(
+        "--format={} is unknown; known values: text, markdown, csv, json",
+        flags.format));
 }
 
 /// False if help was asked for.
@@ -312,7 +312,7 @@ ExitCode compare_verb(const Arguments& arguments) {
         return row.missing();
       }))
     throw ExitError(ExitCode::nothing_matched,
-                    "the folders have no run in common; runs pair by "
+                    "the folders have no run in common; runs are paired by "
                     "experiment, method, n and seed");
   const auto claims = changed_claims(sides);
   const auto ranks = side_ranks(sides);

@@ -70,10 +70,9 @@ ExitCode completion_verb(const Arguments& arguments) {
              arguments))
     return ExitCode::good;
   if (shell != "bash" && shell != "zsh" && shell != "fish")
-    throw UsageError(
-        fmt::format("there is no completion for '{}'; bash, zsh and fish have "
-                    "one",
-                    shell));
+    throw UsageError(fmt::format(
+        "there is no completion for '{}'; known shells: bash, zsh, fish",
+        shell));
   fmt::print("{}", shell == "bash" ? kBash : shell == "zsh" ? kZsh : kFish);
   return ExitCode::good;
 }

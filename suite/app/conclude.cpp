@@ -174,15 +174,16 @@ std::string undecided_text(const RunEnd& end,
         seconds_text(end, u.profile));
   if (u.left_out > 0)
     text += fmt::format(
-        "{} statements of the papers need runs that this "
-        "selection leaves out\n",
+        "{} statements of the papers need runs that are not selected\n",
         u.left_out);
   return text;
 }
 
 std::string no_time_text(const char* what, const RunEnd& end) {
   return fmt::format(
-      "left out for want of time: {} (./bench report {})\n", what, end.out);
+      "not written within the time budget: {}; run ./bench report {}\n",
+      what,
+      end.out);
 }
 
 }  // namespace

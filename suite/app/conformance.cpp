@@ -17,7 +17,7 @@ ExitCode conformance_verb(const Arguments& arguments) {
              "build the target physinv-conformance, or install it");
   go_on_as(fmt::format("{}_contract_test", own->name),
            arguments,
-           fmt::format("physinv_add_contract_tests({}) makes it", own->name));
+           fmt::format("physinv_add_contract_tests({}) builds it", own->name));
 }
 
 }  // namespace physinv

@@ -25,8 +25,8 @@ void check_google(const std::string& argument) {
       argument.substr(kPrefix.size(), argument.find('=') - kPrefix.size());
   if (std::ranges::find(kGoogle, name) == std::end(kGoogle))
     throw UsageError(
-        fmt::format("conformance has no flag {}{}; of "
-                    "GoogleTest's it takes {}",
+        fmt::format("conformance has no flag {}{}; it accepts these flags of "
+                    "GoogleTest: {}",
                     kPrefix,
                     name,
                     fmt::join(kGoogle, ", ")));

@@ -53,7 +53,7 @@ class PerfCounter {
   std::uint64_t value() const {
     std::uint64_t count = 0;
     if (read(fd_, &count, sizeof(count)) != sizeof(count))
-      throw std::runtime_error("the counter cannot be read");
+      throw std::runtime_error("cannot read the instruction counter");
     return count;
   }
 

@@ -20,7 +20,7 @@ std::string text_in(const std::string& format, const Json& results) {
   if (format == "github") return smaller_is_better(results).dump(1) + "\n";
   if (format == "bencher") return bencher_metrics(results).dump(1) + "\n";
   throw UsageError(fmt::format(
-      "--format={} is unknown; known are json, csv, tidy, github, bencher",
+      "--format={} is unknown; known values: json, csv, tidy, github, bencher",
       format));
 }
 

@@ -52,7 +52,8 @@ std::string check_count(const std::string& text) {
   // CLI11 reads 010 as 8.
   return value >= 1 && value <= kMost && text[0] != '0'
              ? ""
-             : fmt::format("{} is no whole number from 1 to {}", text, kMost);
+             : fmt::format(
+                   "{} is not a whole number from 1 to {}", text, kMost);
 }
 
 /// Is it `name`, or one of several such as "--resume,!--fresh"?
@@ -85,7 +86,7 @@ void check_switches(const std::vector<Flag>& flags,
         }))
       continue;
     throw UsageError(
-        fmt::format("{} is neither yes nor no; {}=true or {}=false is",
+        fmt::format("{} is not a boolean; expected {}=true or {}=false",
                     argument,
                     name,
                     name));
@@ -143,7 +144,7 @@ class CampaignFile final : public CLI::ConfigBase {
         "{}: unknown key '{}'; {}",
         one.where,
         one.name,
-        near.empty() ? "flags without their dashes are known, see --help"
+        near.empty() ? "keys are flags without their dashes, see --help"
                      : fmt::format("did you mean {}?", near)));
   }
 
@@ -179,11 +180,11 @@ std::string config_file(const Arguments& arguments) {
     std::error_code none;
     if (!std::filesystem::is_regular_file(path, none) ||
         std::filesystem::file_size(path, none) > kLongestFile)
-      throw UsageError(fmt::format(
-          "--config={} is no file of at most {} bytes; flags without their "
-          "dashes as TOML or JSON are",
-          path,
-          kLongestFile));
+      throw UsageError(
+          fmt::format("--config={} is not a file of at most {} bytes; expected "
+                      "TOML or JSON with flags without their dashes",
+                      path,
+                      kLongestFile));
   }
   return path;
 }

@@ -50,7 +50,7 @@ class AgainstBaseline {
         filter_(flags.filters),
         before_(read_baseline(flags.baseline)) {
     if (!flags.profile.empty() && flags.profile != before_.chosen.profile)
-      throw UsageError(fmt::format("{} is of profile {}, not {}",
+      throw UsageError(fmt::format("{} has the profile {}, not {}",
                                    flags.baseline,
                                    before_.chosen.profile,
                                    flags.profile));
@@ -69,9 +69,9 @@ class AgainstBaseline {
     const Rules rules{.bits = same_bits(), .allow_work = flags_.allow_work};
     if (!rules.bits)
       report.notes.push_back(fmt::format(
-          "{} is of other libraries or flags ({}): judged within its stable "
-          "digits, which {} of {} stages do not have: their losses decide "
-          "nothing",
+          "{} is from other libraries or flags ({}), so only its stable digits "
+          "are compared; {} of {} stages have none, and their losses are not "
+          "compared",
           flags_.baseline,
           before_.bits,
           std::count_if(lines_.begin(),
@@ -130,9 +130,10 @@ class AgainstBaseline {
     fmt::print("renewed {}: {} stages{}\n",
                flags_.baseline,
                renewed.stages.size(),
-               kept ? fmt::format("; instruction counts of {} are kept",
-                                  renewed.counts.counter)
-                    : "");
+               kept
+                   ? fmt::format("; the instruction counts of {} are unchanged",
+                                 renewed.counts.counter)
+                   : "");
   }
 
   const Baseline& before() const { return before_; }
@@ -152,7 +153,7 @@ class AgainstBaseline {
     const auto asked = fmt::format("{}", fmt::join(flags_.filters, " "));
     const auto near = nearest_names(names, asked);
     throw ExitError(ExitCode::nothing_matched,
-                    fmt::format("no case of {} matches '{}'; nearest is {}",
+                    fmt::format("no case of {} matches '{}'; did you mean {}?",
                                 flags_.baseline,
                                 asked,
                                 near.empty() ? names.front() : near.front()));
@@ -207,10 +208,11 @@ std::filesystem::path program_in(const std::string& flag,
   std::filesystem::path path(text);
   if (is_folder(path)) path /= "physinv-bench";
   if (access(path.c_str(), X_OK) != 0)
-    throw UsageError(fmt::format(
-        "{}={} is no program; a physinv-bench or a directory with one is",
-        flag,
-        text));
+    throw UsageError(
+        fmt::format("{}={} is not a program; expected a physinv-bench or a "
+                    "directory that contains one",
+                    flag,
+                    text));
   return std::filesystem::absolute(path);
 }
 
@@ -244,10 +246,10 @@ void judge_clock(const GateFlags& flags,
                                 options.base.string(),
                                 cases.size()));
   if (options.cases.size() < cases.size())
-    report.notes.push_back(
-        fmt::format("{} of {} cases are not in both programs: not timed",
-                    cases.size() - options.cases.size(),
-                    cases.size()));
+    report.notes.push_back(fmt::format(
+        "{} of {} cases were not timed, because one program lacks them",
+        cases.size() - options.cases.size(),
+        cases.size()));
   const PairedTiming timing = time_in_pairs(
       options, timed_run(options), [](std::size_t pair, std::size_t left) {
         fmt::print("pair {}: {} cases undecided\n", pair, left);
@@ -255,7 +257,7 @@ void judge_clock(const GateFlags& flags,
   const std::size_t pairs =
       *std::max_element(timing.pairs.begin(), timing.pairs.end());
   report.notes.push_back(
-      fmt::format("by the clock against {}: {} pairs in {}, order from seed {}",
+      fmt::format("timed against {}: {} pairs in {}, order from seed {}",
                   options.base.string(),
                   pairs,
                   duration_text(timing.seconds),
@@ -281,7 +283,7 @@ void check(const GateFlags& flags) {
   if (flags.baseline.empty() && (flags.update || !flags.results.empty()))
     throw UsageError("--update and --results need --baseline=FILE");
   if (flags.update && !flags.results.empty())
-    throw UsageError("--update runs the cases; it goes without --results");
+    throw UsageError("--update runs the cases, so it excludes --results");
 }
 
 }  // namespace
@@ -324,7 +326,7 @@ ExitCode gate_verb(const Arguments& arguments) {
   }
   if (report.code() != ExitCode::good)
     throw ExitError(report.code(),
-                    fmt::format("the gate is shut: {}", summary_text(report)));
+                    fmt::format("the gate failed: {}", summary_text(report)));
   return ExitCode::good;
 }
 

@@ -28,7 +28,7 @@ struct GateFlags {
 /// own filters are is said where one is wrong.
 std::vector<Case> cases_of(const Chosen& chosen,
                            const std::vector<std::string>& filters = {},
-                           const std::string& whose = "filter of the campaign");
+                           const std::string& whose = "the campaign's filter");
 
 /// 0: as many as there are cores.
 int jobs_or_cores(int jobs);

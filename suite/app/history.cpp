@@ -51,8 +51,9 @@ std::string complaint_of_git() {
   if (ended.status == 0) return "";
   const auto lines = lines_of(ended.errors);
   if (lines.empty())
-    return fmt::format("git ends with {} {}", ended.status, ended.exceeded);
-  return "git says: " + lines.front() +
+    return fmt::format(
+        "git failed with status {} {}", ended.status, ended.exceeded);
+  return "git: " + lines.front() +
          (lines.size() > 1 ? " ... " + lines.back() : "");
 }
 
@@ -64,7 +65,7 @@ std::string end_of_clone() {
       git({"log", "--max-parents=0", "--date-order", "--format=%h of %cs"}));
   return fmt::format(
       "this clone is shallow and begins with commit {}; 'git fetch "
-      "--unshallow' brings what is before",
+      "--unshallow' fetches earlier commits",
       first.empty() ? "?" : first.back());
 }
 
@@ -105,7 +106,7 @@ GitHistory history_of_git(const std::string& baseline) {
   if (!history.lacks.empty())
     for (Section& section : history.sections)
       for (Table& table : section.tables)
-        table.note += fmt::format(" Not all: {}.", history.lacks);
+        table.note += fmt::format(" Incomplete: {}.", history.lacks);
   return history;
 }
 
@@ -132,14 +133,13 @@ ExitCode history_verb(const Arguments& arguments) {
     return ExitCode::good;
   if (fs::path(baseline).is_absolute())
     throw UsageError(fmt::format(
-        "--baseline={} is absolute; a path below this folder, as git has it, "
-        "is expected",
+        "--baseline={} is absolute; expected a path relative to the repository",
         baseline));
   const GitHistory history = history_of_git(baseline);
   if (history.sections.empty())
     throw ExitError(ExitCode::nothing_matched,
-                    fmt::format("git has no two versions of '{}' here; run in "
-                                "a checkout with its history{}{}",
+                    fmt::format("git has fewer than two versions of '{}' here; "
+                                "run in a checkout with its history{}{}",
                                 baseline,
                                 history.lacks.empty() ? "" : "; ",
                                 history.lacks));

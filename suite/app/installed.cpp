@@ -32,8 +32,8 @@ fs::path published_directory() {
                                                  : sources;
   if (!is_folder(chosen))
     throw UsageError(
-        fmt::format("there is no directory '{}' of published numbers; "
-                    "PHYSINV_PUBLISHED_DIR names it",
+        fmt::format("there is no directory '{}' of published numbers; set "
+                    "PHYSINV_PUBLISHED_DIR to it",
                     chosen.string()));
   return chosen;
 }

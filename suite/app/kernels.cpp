@@ -26,20 +26,21 @@ std::string by_names(const std::string& pattern, std::string_view whose) {
   const Ended listed = run_child(
       {program, "--benchmark_list_tests", std::string(kFilter) + "all"});
   if (listed.status != 0)
-    throw EnvironmentError(
-        fmt::format("cannot start {} ({}); {}",
-                    program,
-                    listed.status < 0 ? "it is not there" : "it cannot list",
-                    kRemedy));
+    throw EnvironmentError(fmt::format(
+        "cannot start {} ({}); {}",
+        program,
+        listed.status < 0 ? "it does not exist" : "it cannot list its kernels",
+        kRemedy));
   std::vector<std::string> names;
   std::istringstream lines(listed.output);
   for (std::string name; std::getline(lines, name);)
     if (!name.empty() && filter.matches(name)) names.push_back(exactly(name));
   if (names.empty())
-    throw ExitError(ExitCode::nothing_matched,
-                    fmt::format("no kernel matches '{}'; kernels "
-                                "--benchmark_list_tests shows what there is",
-                                pattern));
+    throw ExitError(
+        ExitCode::nothing_matched,
+        fmt::format(
+            "no kernel matches '{}'; kernels --benchmark_list_tests lists all",
+            pattern));
   return fmt::format("{}{}", kFilter, fmt::join(names, "|"));
 }
 

@@ -75,7 +75,7 @@ void print_stale(const std::vector<Case>& cases, const std::string& path) {
       fmt::print("{} {}\n", c.info.name, c.info.stages[k]);
     }
   }
-  fmt::print("an edit of {} makes {} of {} stages stale\n", path, stale, all);
+  fmt::print("an edit of {} invalidates {} of {} stages\n", path, stale, all);
 }
 
 /// All that is registered, not only what a selection takes.
@@ -83,10 +83,9 @@ void print_validity() {
   registry().validate();
   std::size_t methods = 0;
   for (const auto& e : registry().experiments()) methods += e->methods.size();
-  fmt::print(
-      "{} experiments with {} methods are registered as they should be\n",
-      registry().experiments().size(),
-      methods);
+  fmt::print("{} experiments with {} methods are valid\n",
+             registry().experiments().size(),
+             methods);
 }
 
 /// '|' would end a cell of a Markdown table.
@@ -193,7 +192,7 @@ bool is_json(bool json, const std::string& format, bool claims) {
   const std::string usual = claims ? "markdown" : "text";
   if (!format.empty() && format != usual && format != "json")
     throw UsageError(fmt::format(
-        "--format={} is unknown here; known are {}, json", format, usual));
+        "--format={} is unknown here; known values: {}, json", format, usual));
   if (json && format == usual)
     throw UsageError("--json and --format=" + format + " exclude each other");
   return json || format == "json";

@@ -27,7 +27,8 @@ Loaded load(const std::string& directory, std::FILE* warnings = stdout);
 nlohmann::ordered_json results_of(const Loaded& loaded);
 
 inline constexpr std::string_view kRunAgain =
-    "'run' as before makes up for it and keeps the rest; a merge, all shards";
+    "repeat the same 'run', which reuses finished stages; for a merge, merge "
+    "all shards again";
 
 /// ExitError (incomplete) with `advice` if anything lacks.
 void require_complete(const MissingWork& lacks, std::string_view advice);

@@ -92,8 +92,7 @@ bool answered(const std::string& flag) {
       "unknown verb '{}'; {}",
       word,
       near.empty()
-          ? fmt::format("known are {}; 'run {}' runs the cases of that "
-                        "name",
+          ? fmt::format("known verbs: {}; 'run {}' runs the cases of that name",
                         fmt::join(known, ", "),
                         word)
           : "did you mean " + near + "?"));
@@ -108,7 +107,7 @@ ExitCode dispatch(Arguments arguments) {
   if (arguments.empty()) return run_verb(arguments);
   if (arguments[0] == "help" && arguments.size() > 1) {
     if (arguments.size() > 2)
-      throw UsageError("help is of one verb; 'help run' is right");
+      throw UsageError("help takes one verb, as in 'help run'");
     arguments = {arguments[1], "--help"};
   }
   if (answered(arguments[0])) return ExitCode::good;
@@ -147,7 +146,7 @@ bool can_run_here() {
 }
 
 constexpr const char* kUnwritable =
-    "standard output cannot be written; it may be closed, a disk full, or the "
+    "cannot write standard output; it may be closed, the disk full, or the "
     "limit on file sizes (ulimit -f) too low";
 
 ExitCode complain(ExitCode code, std::string_view text) {
@@ -158,10 +157,11 @@ ExitCode complain(ExitCode code, std::string_view text) {
 
 ExitCode guarded(Arguments arguments) {
   if (!can_run_here())
-    return complain(ExitCode::environment,
-                    fmt::format("built for {}, which this processor is not; "
-                                "remove the build directory to build anew",
-                                build_info().instruction_set));
+    return complain(
+        ExitCode::environment,
+        fmt::format("built for {}, which this processor does not support; "
+                    "remove the build directory and build again",
+                    build_info().instruction_set));
   try {
     const ExitCode code = dispatch(std::move(arguments));
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
@@ -174,8 +174,7 @@ ExitCode guarded(Arguments arguments) {
   } catch (const StoreError& error) {
     return complain(ExitCode::environment, error.what());
   } catch (const std::bad_alloc&) {
-    return complain(ExitCode::environment,
-                    "out of memory; fewer --jobs may do");
+    return complain(ExitCode::environment, "out of memory; try fewer --jobs");
   } catch (const std::system_error& error) {  // fmt::print throws it, too
     return complain(ExitCode::environment,
                     std::ferror(stdout) != 0 ? kUnwritable : error.what());

@@ -28,7 +28,7 @@ ExitCode merge_verb(const Arguments& arguments) {
     fmt::print("warning: {}\n", warning);
   fmt::print("merged {} into {}\n", shards.size(), out);
   require_complete(merged.lacks,
-                   "run what is missing, then merge all shards again");
+                   "run the missing cases, then merge all shards again");
   return ExitCode::good;
 }
 

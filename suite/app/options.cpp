@@ -50,12 +50,12 @@ constexpr std::size_t kLongestList = 100'000;
 Index number(std::string_view key, std::string_view text, Range range) {
   const auto value = decimal<Index>(text);
   if (!value || *value < range.least || *value > range.most)
-    throw UsageError(
-        fmt::format("'{}' is no value for {}; a whole number from {} to {} is",
-                    text,
-                    key,
-                    range.least,
-                    range.most));
+    throw UsageError(fmt::format(
+        "'{}' is not a value for {}; expected a whole number from {} to {}",
+        text,
+        key,
+        range.least,
+        range.most));
   return *value;
 }
 
@@ -74,10 +74,12 @@ std::vector<T> numbers(std::string_view key,
                            : number(key, part.substr(dash + 1), range);
     if (last < first)
       throw UsageError(fmt::format(
-          "{}={} is no range; first-last with first <= last is", key, part));
+          "{}={} is not a range; expected first-last with first <= last",
+          key,
+          part));
     if (all.size() + static_cast<std::size_t>(last - first) >= kLongestList)
       throw UsageError(fmt::format(
-          "{} has more than {} values; fewer are", key, kLongestList));
+          "{} has more than {} values; give fewer", key, kLongestList));
     for (Index v = first; v <= last; ++v) all.push_back(static_cast<T>(v));
   }
   return all;
@@ -94,11 +96,12 @@ void set(Overrides& o, const std::string& key, const std::string& value) {
     o.methods = split(value, ',');
   } else if (key == "precision") {
     if (value != "f32" && value != "f64")
-      throw UsageError("unknown precision '" + value + "'; known are f32, f64");
+      throw UsageError("unknown precision '" + value +
+                       "'; known values: f32, f64");
     o.precision = value == "f32" ? Precision::f32 : Precision::f64;
   } else {
     throw UsageError(
-        fmt::format("--set has no key '{}'; known are {}", key, kKeys));
+        fmt::format("--set has no key '{}'; known keys: {}", key, kKeys));
   }
 }
 
@@ -115,9 +118,10 @@ std::string filter_example(const std::string& profile) {
 /// In the order of the file. All of them must be there: it is part of a whole.
 std::vector<Case> listed(std::vector<Case> cases, const std::string& file) {
   if (!is_file(file))
-    throw UsageError(fmt::format(
-        "there is no file '{}'; --cases takes names of cases, one a line",
-        file));
+    throw UsageError(
+        fmt::format("there is no file '{}'; --cases needs a file with one case "
+                    "name per line",
+                    file));
   std::map<std::string, Case*> by_name;
   for (Case& c : cases) by_name[c.info.name] = &c;
   std::istringstream lines(read_plain_text(file));
@@ -129,10 +133,11 @@ std::vector<Case> listed(std::vector<Case> cases, const std::string& file) {
     if (name.empty() || !taken.insert(name).second) continue;
     const auto at = by_name.find(name);
     if (at == by_name.end())
-      throw UsageError(fmt::format(
-          "{} names {}, which is not in the selection; 'list' shows what is",
-          file,
-          name));
+      throw UsageError(
+          fmt::format("{} names {}, which is not selected; 'list' prints the "
+                      "selected cases",
+                      file,
+                      name));
     own.push_back(*at->second);
   }
   return own;
@@ -221,9 +226,9 @@ void Selection::refuse(const std::vector<Case>& all_cases,
   throw ExitError(
       ExitCode::nothing_matched,
       near.empty()
-          ? fmt::format("profile {} has no cases; see physinv-bench list",
+          ? fmt::format("profile {} has no cases; see 'physinv-bench list'",
                         profile)
-          : fmt::format("no case of profile {} matches '{}'; nearest are {}",
+          : fmt::format("no case of profile {} matches '{}'; nearest: {}",
                         profile,
                         asked,
                         fmt::join(near, ", ")));
@@ -235,10 +240,10 @@ Overrides parse_overrides(const std::vector<std::string>& sets,
   for (const auto& text : sets) {
     const auto at = text.find('=');
     if (at == std::string::npos || at + 1 == text.size())
-      throw UsageError(
-          fmt::format("--set {} has no value; key=value is right, with keys {}",
-                      text,
-                      kKeys));
+      throw UsageError(fmt::format(
+          "--set {} has no value; expected key=value with one of the keys {}",
+          text,
+          kKeys));
     set(o, text.substr(0, at), text.substr(at + 1));
   }
   if (!seeds.empty()) set(o, "seeds", seeds);
@@ -256,7 +261,8 @@ double parse_duration(const std::string& flag, const std::string& text) {
                                                         : 0;
   if (error != std::errc() || !(value * seconds > 0) || value > 1e9)
     throw UsageError(
-        fmt::format("{}={} is not positive and finite; 90, 90s, 10m and 2h are",
+        fmt::format("{}={} is not positive and finite; expected a time such as "
+                    "90, 90s, 10m or 2h",
                     flag,
                     text));
   return value * seconds;
@@ -266,12 +272,13 @@ Shard parse_shard(const std::string& text) {
   if (text.empty()) return {};
   const auto parts = split(text, '/');
   if (parts.size() != 2)
-    throw UsageError("--shard=" + text + " is no I/N; 1/3 is");
+    throw UsageError("--shard=" + text +
+                     " is not I/N; expected a part such as 1/3");
   const Shard s{static_cast<int>(number("--shard", parts[0], kShards)),
                 static_cast<int>(number("--shard", parts[1], kShards))};
   if (s.part > s.parts)
     throw UsageError(
-        fmt::format("--shard={} is no part; the parts are 1/{} to {}/{}",
+        fmt::format("--shard={} is not a part; expected 1/{} to {}/{}",
                     text,
                     s.parts,
                     s.parts,
@@ -281,10 +288,10 @@ Shard parse_shard(const std::string& text) {
 
 std::filesystem::path results_directory(const std::string& text) {
   if (!is_folder(text))
-    throw UsageError(fmt::format(
-        "there are no results in '{}'; a directory that 'run' wrote is "
-        "expected, such as results/quick",
-        text));
+    throw UsageError(
+        fmt::format("there are no results in '{}'; expected a directory that "
+                    "'run' wrote, such as results/quick",
+                    text));
   return text;
 }
 

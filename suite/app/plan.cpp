@@ -152,7 +152,7 @@ void print_sum(const std::vector<Case>& cases, const std::vector<Cost>& costs) {
   const int cores = available_cores();
   const auto known = known_of(costs);
   const std::string time =
-      known.empty() ? "time not known, --exact measures"
+      known.empty() ? "time unknown, --exact measures it"
                     : fmt::format(
                           "{} of one core (from {} to {}), {} with {} "
                           "workers",
@@ -172,13 +172,13 @@ void print_sum(const std::vector<Case>& cases, const std::vector<Cost>& costs) {
     if (!std::isfinite(costs[longest].seconds) ||
         costs[i].seconds > costs[longest].seconds)
       longest = i;
-  fmt::print("the longest of these cases, which bounds it: {}, {}\n",
+  fmt::print("the longest of these cases, a lower bound: {}, {}\n",
              cases[longest].info.name,
              duration_text(costs[longest].seconds));
   if (sum.unknown > 0)
     fmt::print(
-        "of {} cases the time is not known and not in the sum; --exact "
-        "measures\n",
+        "{} cases have no known time and are not in the sum; --exact measures "
+        "it\n",
         sum.unknown);
 }
 
@@ -195,8 +195,8 @@ void print_factors(const std::vector<Cost>& costs,
   }
   if (compared == 0) return;
   fmt::print(
-      "{} of {} cases within a factor 1.5 of what was measured ({:.0f} %); in "
-      "sum {} predicted, {} measured\n",
+      "{} of {} cases within a factor of 1.5 of the measured time ({:.0f} %); "
+      "in total {} predicted, {} measured\n",
       close,
       compared,
       100.0 * static_cast<double>(close) / static_cast<double>(compared),
@@ -267,7 +267,9 @@ void print_workers(const std::vector<Cost>& costs) {
   std::vector<double> seconds;
   for (const Cost& c : known_of(costs)) seconds.push_back(c.seconds);
   if (seconds.empty()) {
-    fmt::print("time not known: no campaign tells it; --exact measures\n");
+    fmt::print(
+        "time unknown: no published campaign has these cases; --exact measures "
+        "it\n");
     return;
   }
   fmt::print("{:>8}  {:>14}  {:>10}\n", "workers", "time", "efficiency");
@@ -281,7 +283,7 @@ void print_workers(const std::vector<Cost>& costs) {
                duration_text(split.longest),
                100 * split.efficiency() * idle);
   }
-  fmt::print("the longest case takes {}, which bounds the campaign\n",
+  fmt::print("the longest case takes {}, a lower bound for the campaign\n",
              duration_text(*std::max_element(seconds.begin(), seconds.end())));
 }
 
@@ -335,7 +337,7 @@ ExitCode plan_verb(const Arguments& arguments) {
           arguments))
     return ExitCode::good;
   if ((from || !plot.empty()) && beside.empty())
-    throw UsageError(fmt::format("{} needs results; --against names them",
+    throw UsageError(fmt::format("{} needs --against=RESULTS",
                                  from ? "--measured" : "--plot"));
   const auto cases = selection.cases();
   const auto known =

@@ -50,16 +50,16 @@ void check_build(const std::string& file) {
   const auto at = bytes.find(kMark);
   if (at == std::string::npos)
     throw UsageError(
-        fmt::format("{} is no plug-in of physinv_add_plugin", file));
+        fmt::format("{} is not a plug-in built by physinv_add_plugin", file));
   const auto begin = at + kMark.size();
   const auto build = bytes.substr(begin, bytes.find('\0', begin) - begin);
   if (build != build_info().interfaces)
-    throw UsageError(
-        fmt::format("{} was built on build {} of the suite, this is {}; build "
-                    "it anew on what is installed with this program",
-                    file,
-                    one_line(build),
-                    build_info().interfaces));
+    throw UsageError(fmt::format(
+        "{} was built with build {} of the suite, this is build {}; build it "
+        "again with the headers installed with this program",
+        file,
+        one_line(build),
+        build_info().interfaces));
 }
 
 /// Names that the plug-in was to have for itself.
@@ -68,16 +68,15 @@ void check_names(const std::string& file, std::size_t before) {
   for (const Outside& o : outsides())
     if (!plugins.insert(o.name).second)
       throw UsageError(
-          fmt::format("{}: there are two plug-ins {}", file, o.name));
+          fmt::format("{}: there are two plug-ins named {}", file, o.name));
   std::set<std::string> names;
   const auto& all = registry().experiments();
   for (std::size_t i = 0; i < all.size(); ++i)
     if (!names.insert(all[i]->name).second && i >= before)
-      throw UsageError(
-          fmt::format("{} registers {}, which is there already; give it "
-                      "another name",
-                      file,
-                      all[i]->name));
+      throw UsageError(fmt::format(
+          "{} registers {}, which already exists; give it another name",
+          file,
+          all[i]->name));
   if (const auto wrong = outside_problems(); !wrong.empty())
     throw UsageError(wrong.front());
 }

@@ -48,7 +48,8 @@ Json results_beside(const fs::path& folder, const Json& digest) {
   const bool linked = !told.empty() || digest.contains("results");
   if (linked && (told != digest.value("checksum", "") ||
                  digest.value("results", "") != checksum_of(results)))
-    throw std::runtime_error("results.json.gz beside it is of another");
+    throw std::runtime_error(
+        "the results.json.gz next to it belongs to another digest");
   return results;
 }
 
@@ -130,7 +131,7 @@ NamedDigest published_digest(const fs::path& folder,
   const std::string bytes = read_file(path);
   try {
     auto digest = parse_json<Json>(bytes);
-    if (!is_intact(digest)) throw std::runtime_error("it fails its checksum");
+    if (!is_intact(digest)) throw std::runtime_error("its checksum is wrong");
     const Json results = results_beside(folder, digest);
     require_figures(folder, digest);
     const Results stages = summarized_results(results);
@@ -153,8 +154,9 @@ NamedDigest published_digest(const fs::path& folder,
 std::vector<NamedDigest> published_digests(
     const fs::path& directory, const std::vector<std::string>& names) {
   if (!is_folder(directory))
-    throw UsageError(fmt::format("there is no directory '{}' of campaigns",
-                                 directory.string()));
+    throw UsageError(
+        fmt::format("there is no directory '{}' of published campaigns",
+                    directory.string()));
   std::set<std::string> missing(names.begin(), names.end());
   std::vector<fs::path> paths;
   for (const auto& entry : fs::directory_iterator(directory))
@@ -162,11 +164,11 @@ std::vector<NamedDigest> published_digests(
         (names.empty() || missing.erase(entry.path().filename()) > 0))
       paths.push_back(entry.path());
   if (!missing.empty())
-    throw ExitError(ExitCode::nothing_matched,
-                    fmt::format("there is no campaign '{}' in {}; "
-                                "RESULTS.md names them",
-                                *missing.begin(),
-                                directory.string()));
+    throw ExitError(
+        ExitCode::nothing_matched,
+        fmt::format("there is no campaign '{}' in {}; RESULTS.md lists them",
+                    *missing.begin(),
+                    directory.string()));
   std::sort(paths.begin(), paths.end());
   const Published published(published_directory());
   std::vector<NamedDigest> found;
@@ -174,7 +176,7 @@ std::vector<NamedDigest> published_digests(
     found.push_back(published_digest(path, published));
   if (found.empty())
     throw ExitError(ExitCode::nothing_matched,
-                    fmt::format("no folder of '{}' holds a digest.json; "
+                    fmt::format("no folder in '{}' contains a digest.json; "
                                 "report --publish writes one",
                                 directory.string()));
   return found;

@@ -65,10 +65,10 @@ void check_claims(const ClaimTally& j) {
 /// Pages of a campaign that is kept with the sources, which stays as it is.
 ExitCode report_published(const std::string& results, const std::string& out) {
   if (out.empty())
-    throw UsageError(fmt::format(
-        "'{}' is a published campaign and stays as it is; say where the pages "
-        "go with --out=DIR",
-        results));
+    throw UsageError(
+        fmt::format("'{}' is a published campaign and is never changed; give "
+                    "the directory of the pages with --out=DIR",
+                    results));
   const Published numbers = printed_numbers();
   const auto campaign = published_digest(results, numbers);
   const auto sections = sections_of(campaign);
@@ -87,8 +87,8 @@ ExitCode report_published(const std::string& results, const std::string& out) {
                          static_cast<std::size_t>(Screen::of(stdout).columns)),
       (fs::path(out) / "index.html").string(),
       is_folder(fs::path(results) / "figures")
-          ? "figures of curves are those that were published; made by"
-          : "figures are not kept with a published campaign",
+          ? "figures of curves are the published ones; command"
+          : "figures are not stored with this campaign; command",
       origin["command"].get<std::string>());
   return ExitCode::good;
 }
@@ -100,11 +100,11 @@ ExitCode report_published(const std::string& results, const std::string& out) {
   require_complete(loaded.lacks, kRunAgain);
   if (!unknown.empty())
     throw ExitError(ExitCode::nothing_matched,
-                    fmt::format("this program does not know {}; report with "
-                                "the one that ran it",
+                    fmt::format("this program does not have {}; report with "
+                                "the program that ran it",
                                 unknown));
   throw ExitError(ExitCode::nothing_matched,
-                  "no experiment that declares a report has results in '" +
+                  "no experiment with a report has results in '" +
                       flags.results + "'; run cases first");
 }
 
@@ -120,7 +120,7 @@ void print_summary(const std::vector<Section>& sections,
   if (origin.contains("crowded"))
     fmt::print("{}\n", origin["crowded"].get<std::string>());
   if (!unknown.empty())
-    fmt::print("not reported: this program does not know {}\n", unknown);
+    fmt::print("not reported: this program does not have {}\n", unknown);
 }
 
 /// False if help was asked for.
@@ -164,7 +164,7 @@ ExitCode report_verb(const Arguments& arguments) {
   if (is_published(flags.results)) {
     if (flags.check || !flags.publish.empty() || flags.one_file)
       throw UsageError(fmt::format(
-          "'{}' is a published campaign: report takes --out alone there",
+          "'{}' is a published campaign, for which report accepts only --out",
           flags.results));
     return report_published(flags.results, flags.out);
   }
@@ -195,7 +195,7 @@ ExitCode report_verb(const Arguments& arguments) {
       decided_by_runs(registry(), sections, loaded.results, numbers) == 0)
     throw ExitError(ExitCode::incomplete,
                     "incomplete: these runs decide no gating claim; run the "
-                    "profile that a claim names");
+                    "profile that the claims name");
   return ExitCode::good;
 }
 

@@ -157,7 +157,7 @@ std::string plan_text(const std::vector<Again>& all) {
                       duration_text(seconds));
   if (unknown > 0)
     text +=
-        fmt::format("{} cases of them are not registered any more\n", unknown);
+        fmt::format("{} of these cases are no longer registered\n", unknown);
   return text;
 }
 
@@ -257,19 +257,19 @@ ExitCode reproduce_verb(const Arguments& arguments) {
   if (!parse_flags(arguments, flags)) return ExitCode::good;
   if (flags.names.empty() == flags.paper.empty())
     throw UsageError(
-        "name published campaigns, or a paper with --paper=KEY; one of both is "
-        "expected");
+        "give either published campaigns or a paper (--paper=KEY)");
   const auto campaigns = published_digests(flags.campaigns, flags.names);
   const Papers latest = latest_claims(campaigns);
   const auto all =
       to_run_again(campaigns, latest, flags.campaigns, flags.paper);
   if (all.empty())
-    throw ExitError(ExitCode::nothing_matched,
-                    fmt::format("no campaign in {} decides a claim of '{}'; "
-                                "papers are {}",
-                                flags.campaigns,
-                                flags.paper,
-                                keys_of(latest)));
+    throw ExitError(
+        ExitCode::nothing_matched,
+        fmt::format(
+            "no campaign in {} decides a claim of '{}'; known papers: {}",
+            flags.campaigns,
+            flags.paper,
+            keys_of(latest)));
   fmt::print("{}", plan_text(all));
   if (flags.dry) return ExitCode::good;
   std::vector<std::string> troubles;
@@ -286,14 +286,13 @@ ExitCode reproduce_verb(const Arguments& arguments) {
       show_changes(all, latest, latest_claims(published_digests(kept)));
   if (!troubles.empty())
     throw ExitError(ExitCode::incomplete,
-                    fmt::format("{} campaigns did not run whole, first {}",
+                    fmt::format("{} campaigns are incomplete, first {}",
                                 troubles.size(),
                                 troubles.front()));
   if (changed > 0)
-    throw ExitError(ExitCode::claim,
-                    fmt::format("{} claims come to another verdict than "
-                                "the published one",
-                                changed));
+    throw ExitError(
+        ExitCode::claim,
+        fmt::format("{} claims have another verdict than published", changed));
   return ExitCode::good;
 }
 

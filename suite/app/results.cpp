@@ -56,7 +56,8 @@ void write_html(const fs::path& directory,
     others.emplace_back("history", "What the gate measured, commit by commit");
   }
   if (!history.lacks.empty())
-    fmt::print("note: no whole history of the gate: {}\n", history.lacks);
+    fmt::print("note: the history of the gate is incomplete: {}\n",
+               history.lacks);
   Folder(directory).write("index.html", campaigns_html(all, others));
 }
 
@@ -78,8 +79,8 @@ void write_pages(const fs::path& directory,
         folder.read(name, kLargestText).find(kWrittenByResults) ==
             std::string::npos)
       throw EnvironmentError(
-          fmt::format("{} is no page of results; name another folder with "
-                      "--pages, or move it",
+          fmt::format("{} is not a page written by 'results'; choose another "
+                      "folder with --pages, or move it",
                       (directory / name).string()));
   for (const auto& [name, text] : pages)
     if (!folder.has(name) || folder.read(name, kLargestText) != text)

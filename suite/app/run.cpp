@@ -181,9 +181,8 @@ std::string result_text(const RunFlags& flags, const CampaignResult& r) {
 
 /// What a campaign that did not come to its end says last.
 std::string go_on_text(const RunFlags& flags) {
-  return flags.campaign.resume
-             ? "the same command goes on with them"
-             : "the same command without --fresh goes on with them";
+  return flags.campaign.resume ? "the same command resumes"
+                               : "the same command without --fresh resumes";
 }
 
 /// Runs the cases again beside the store, only for their times.
@@ -207,7 +206,7 @@ Repetitions repeat(const Prepared& prepared,
         const std::string name = c.info.name + "/" + s.stage;
         if (!has_result(s) || !hashes.contains(name)) continue;
         if (loss_bits(s) != hashes[name])
-          throw std::logic_error(name + " has other results when repeated");
+          throw std::logic_error(name + " gives other results when repeated");
         all[name + " " + s.key].push_back(s.clocks.solve);
       }
     }
@@ -293,25 +292,26 @@ std::optional<ExitError> ending_of(const RunFlags& flags,
                                    std::size_t cases) {
   if (result.interrupted)
     return ExitError(ExitCode::interrupted,
-                     fmt::format("interrupted: {} of {} cases not run; what "
-                                 "had finished is kept, {}",
+                     fmt::format("interrupted: {} of {} cases not run; "
+                                 "finished stages are saved, {}",
                                  result.not_run.size(),
                                  cases,
                                  go_on_text(flags)));
   if (!result.failed.empty())
     return ExitError(
         ExitCode::case_failed,
-        fmt::format("{} stages failed, first {}; the others are kept, and the "
-                    "next run tries these again",
+        fmt::format("{} stages failed, first {}; the others are saved, and the "
+                    "next run tries the failed ones again",
                     result.failed.size(),
                     result.failed.front()));
   if (!result.not_run.empty())
-    return ExitError(ExitCode::incomplete,
-                     fmt::format("incomplete: {} of {} cases not run, out of "
-                                 "time; {}",
-                                 result.not_run.size(),
-                                 cases,
-                                 go_on_text(flags)));
+    return ExitError(
+        ExitCode::incomplete,
+        fmt::format(
+            "incomplete: {} of {} cases not run within the time budget; {}",
+            result.not_run.size(),
+            cases,
+            go_on_text(flags)));
   return {};
 }
 

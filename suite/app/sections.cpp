@@ -187,9 +187,10 @@ Published printed_numbers() {
   const auto directory = published_directory();
   Published numbers(directory);
   if (const auto wrong = registry().unknown_printed(numbers); !wrong.empty())
-    throw StoreError(fmt::format("{} lacks numbers (restore its files): {}",
-                                 directory.string(),
-                                 fmt::join(wrong, "; ")));
+    throw StoreError(
+        fmt::format("{} lacks published numbers (restore its files): {}",
+                    directory.string(),
+                    fmt::join(wrong, "; ")));
   return numbers;
 }
 

@@ -76,14 +76,15 @@ void require_same(const Submission& s, const std::vector<Case>& cases) {
   };
   const bool fewer =
       std::includes(before.begin(), before.end(), now.begin(), now.end());
-  throw UsageError(fmt::format(
-      "{} was submitted with {} cases, now there are {}: {} is {}; the same "
-      "list runs what is missing, another directory another campaign",
-      s.directory.string(),
-      before.size(),
-      now.size(),
-      fewer ? lacks(before, now) : lacks(now, before),
-      fewer ? "left out" : "new"));
+  throw UsageError(
+      fmt::format("{} was submitted with {} cases, but {} are selected now: {} "
+                  "is {}; give the same list to run missing cases, or another "
+                  "directory for another campaign",
+                  s.directory.string(),
+                  before.size(),
+                  now.size(),
+                  fewer ? lacks(before, now) : lacks(now, before),
+                  fewer ? "left out" : "new"));
 }
 
 /// A split of these cases, in files.
@@ -118,8 +119,8 @@ Submission prepare_submission(SubmitFlags& flags) {
       return written(flags, selection, cases);
     if (selection != s.selection)
       throw UsageError(fmt::format(
-          "{} was submitted with {}; the same flags run what is missing, "
-          "another directory another campaign",
+          "{} was submitted with {}; give the same flags to run missing cases, "
+          "or another directory for another campaign",
           flags.directory,
           fmt::join(s.selection, " ")));
     return s;
@@ -137,8 +138,8 @@ std::vector<std::size_t> missing_tasks(const std::vector<TaskState>& states) {
 void require_slurm() {
   if (!has_program("sbatch"))
     throw EnvironmentError(
-        "there is no Slurm here (no sbatch in PATH); run on a login node of "
-        "the cluster, or share the work out with --shard and merge");
+        "Slurm is not installed (no sbatch in PATH); run on a login node of "
+        "the cluster, or use --shard and merge");
 }
 
 /// The array's id is kept before anything else can go wrong: what is in the
@@ -177,8 +178,8 @@ void merge_after_last(Submission& s, bool runs) {
     submit_merge(s, runs ? s.jobs.back() : "");
   } catch (const EnvironmentError& error) {
     throw EnvironmentError(
-        fmt::format("job {} is submitted, the merge after it is not: {}; the "
-                    "same command submits it",
+        fmt::format("job {} is submitted, but its merge is not: {}; repeat the "
+                    "command to submit it",
                     s.jobs.back(),
                     error.what()));
   }
@@ -221,27 +222,26 @@ ExitCode submit_verb(const Arguments& arguments) {
              own))
     return ExitCode::good;
   if (flags.directory.empty())
-    throw UsageError("submit needs a directory; --slurm=DIR names it");
+    throw UsageError("submit needs a directory: --slurm=DIR");
   if (!flags.selection.shard.empty())
-    throw UsageError("submit makes parts by itself; --shard is for run");
+    throw UsageError(
+        "submit splits the cases itself; use --shard only with run");
   require_slurm();
   Submission s = prepare_submission(flags);
   auto states = states_of(s);
   if (const auto unknown = ask_queue(s, states); !unknown.empty())
     throw EnvironmentError(fmt::format(
-        "{}; without the queue, tasks that are in it would be submitted twice",
+        "{}; submitting without knowing the queue could run tasks twice",
         unknown));
   const auto missing = missing_tasks(states);
   if (!missing.empty())
     submit_missing(s, missing, sbatch_options);
   else if (!s.jobs.empty() && s.merges_after != s.jobs.back())
-    fmt::print("the merge that is missing is submitted\n");
+    fmt::print("submitting the missing merge\n");
   else
-    fmt::print(
-        "nothing is missing that is not in the queue; see "
-        "{} status {}\n",
-        program().name,
-        flags.directory);
+    fmt::print("all missing tasks are in the queue; see {} status {}\n",
+               program().name,
+               flags.directory);
   merge_after_last(s, !missing.empty() || in_queue(states));
   return ExitCode::good;
 }
@@ -283,9 +283,8 @@ ExitCode status_verb(const Arguments& arguments) {
              done,
              cases,
              failed,
-             unknown.empty()
-                 ? fmt::format("{} tasks in the queue", queued)
-                 : "whether tasks are in the queue is not known: " + unknown);
+             unknown.empty() ? fmt::format("{} tasks in the queue", queued)
+                             : "the state of the queue is unknown: " + unknown);
   if (failed > 0 && queued == 0)
     throw ExitError(ExitCode::case_failed,
                     fmt::format("{} cases failed; their tasks' logs are in {}",
@@ -299,7 +298,7 @@ ExitCode status_verb(const Arguments& arguments) {
                     cases,
                     !unknown.empty() ? unknown
                     : queued > 0     ? "tasks are in the queue"
-                                 : "the same 'submit' runs what is missing"));
+                                 : "repeat 'submit' to run the missing cases"));
   return ExitCode::good;
 }
 

@@ -25,11 +25,11 @@ void print(const VerifyReport& r, const MissingWork& lacks) {
       r.mismatches.size());
   if (r.not_again > 0)
     fmt::print(
-        "not verified: {} losses of examples whose solution is not "
-        "stored, of networks without plain loops\n",
+        "not verified: {} losses whose solution is not stored and whose "
+        "network has no plain loops\n",
         r.not_again);
   for (const auto& name : r.unknown)
-    fmt::print("not verified: this program does not know {}\n", name);
+    fmt::print("not verified: this program does not have {}\n", name);
   for (std::size_t i = 0; i < std::min<std::size_t>(10, r.mismatches.size());
        ++i)
     fmt::print("  {}\n", r.mismatches[i]);
@@ -57,16 +57,15 @@ ExitCode verify_verb(const Arguments& arguments) {
                                 "results or the physics changed",
                                 r.mismatches.size(),
                                 r.mismatches.front()));
-  require_complete(
-      loaded.lacks,
-      "the same 'run' command makes up for it, and keeps the rest");
+  require_complete(loaded.lacks,
+                   "repeat the same 'run' command; it reuses finished stages");
   if (r.stages == 0 && r.unknown.empty())
     throw ExitError(ExitCode::nothing_matched,
-                    "there is nothing to verify in '" + directory + "'");
+                    "nothing to verify in '" + directory + "'");
   if (!r.unknown.empty())
     throw ExitError(ExitCode::incomplete,
-                    fmt::format("incomplete: this program does not know {}; "
-                                "verify with the one that ran it",
+                    fmt::format("incomplete: this program does not have {}; "
+                                "verify with the program that ran it",
                                 r.unknown.front()));
   return ExitCode::good;
 }

@@ -74,7 +74,7 @@ std::optional<Worse> more_time(const Reading& a,
   if (!costs_compare(a, b)) return lost_cost(a, b);
   const TimeRatio ratio = time_ratio(a, b);
   if (ratio.b_unknown && !ratio.a_unknown)
-    return Worse{INFINITY, "its time is lost", true};
+    return Worse{INFINITY, "it has no time any more", true};
   if (!is_slower(ratio, factor)) return {};
   const double size = ratio.value.value_or(INFINITY);
   return Worse{
@@ -195,10 +195,9 @@ std::optional<Regression> regression(Aspect aspect,
   // ended well have none to be held against.
   const TimedPairs timed = timed_pairs(c);
   if (timed.compared > 0 || timed.unknown == 0) return {};
-  return Regression{
-      .worst = fmt::format("it has no times to be held against: {}",
-                           reasons_text(timed.without)),
-      .of_time = true};
+  return Regression{.worst = fmt::format("it has no times to compare with: {}",
+                                         reasons_text(timed.without)),
+                    .of_time = true};
 }
 
 std::string pairs_text(const Comparison& c) {

@@ -32,7 +32,7 @@ class Lines {
   std::string_view next() {
     const auto end = rest_.find('\n');
     if (end == std::string_view::npos)
-      throw std::runtime_error("it ends too early");
+      throw std::runtime_error("it ends unexpectedly");
     const std::string_view line = rest_.substr(0, end);
     rest_.remove_prefix(end + 1);
     return line;
@@ -50,7 +50,7 @@ std::pair<std::string, std::string> first_word_and_rest(std::string_view line) {
 
 std::uint64_t parse_count(std::string_view text) {
   if (const auto value = decimal<std::uint64_t>(text)) return *value;
-  throw std::runtime_error(fmt::format("'{}' is no count", text));
+  throw std::runtime_error(fmt::format("'{}' is not a count", text));
 }
 
 void read_stages(Baseline& b, Lines& lines, const std::string& how_many) {
@@ -58,7 +58,7 @@ void read_stages(Baseline& b, Lines& lines, const std::string& how_many) {
   for (auto left = parse_count(how_many); left > 0; --left) {
     b.stages.push_back(stage_line(lines.next()));
     if (!names.insert(b.stages.back().name).second)
-      throw std::runtime_error(b.stages.back().name + " stands twice");
+      throw std::runtime_error(b.stages.back().name + " appears twice");
   }
 }
 
@@ -92,7 +92,7 @@ Baseline parse_body(Lines lines) {
     const bool may_be_empty = key == "revision";  // outside of git
     if (!value.empty() || may_be_empty)
       if (!seen.insert(key).second && !repeats)
-        throw std::runtime_error(fmt::format("'{}' stands twice", key));
+        throw std::runtime_error(fmt::format("'{}' appears twice", key));
     if (key == "profile") b.chosen.profile = value;
     if (key == "seeds") b.chosen.seeds = value;
     if (key == "filter") b.chosen.filters.push_back(value);
@@ -122,19 +122,19 @@ std::string_view unsealed(std::string_view text, const std::string& where) {
     return body;
   if (text.starts_with(kTitle) &&
       text.substr(0, text.find('\n')).ends_with('\r'))
-    throw StoreError(fmt::format(
-        "{} has lines that end with CR and LF, as git makes them with "
-        "core.autocrlf; a baseline ends them with LF ('{} -text' in "
-        ".gitattributes, then check it out anew)",
-        where,
-        where));
+    throw StoreError(
+        fmt::format("{} has lines that end with CR and LF, as git writes them "
+                    "with core.autocrlf; a baseline needs LF (add '{} -text' "
+                    "to .gitattributes and check it out again)",
+                    where,
+                    where));
   if (text.starts_with(kTitle))
     throw StoreError(
-        fmt::format("{} is damaged: it fails its checksum (restore it from "
-                    "the revision control; {})",
+        fmt::format("{} is damaged: its checksum is wrong (restore it from "
+                    "version control; {})",
                     where,
                     kMake));
-  throw UnreadableInput(fmt::format("{} is no baseline; {}", where, kMake));
+  throw UnreadableInput(fmt::format("{} is not a baseline; {}", where, kMake));
 }
 
 }  // namespace
@@ -195,15 +195,15 @@ Baseline parse_baseline(const std::string& text, const std::string& where) {
   try {
     const std::string_view title = lines.next();
     if (!title.starts_with(kTitle))
-      throw std::runtime_error("its first line is another");
+      throw std::runtime_error("its first line is wrong");
     if (parse_count(title.substr(kTitle.size())) > kVersion)
       throw std::runtime_error("its version is newer than this program");
     Baseline b = parse_body(lines);
-    if (b.stages.empty()) throw std::runtime_error("it holds no stage");
+    if (b.stages.empty()) throw std::runtime_error("it has no stages");
     return b;
   } catch (const std::runtime_error& error) {
     throw UnreadableInput(
-        fmt::format("{} is no baseline for this program: {}; {}",
+        fmt::format("{} is not a baseline for this program: {}; {}",
                     where,
                     error.what(),
                     kMake));

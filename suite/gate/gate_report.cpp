@@ -71,7 +71,7 @@ std::string text_of(const Distance& d) {
   std::string text;
   if (d.x.value_or(0) > 0) text = fmt::format("{:.1e} in x", *d.x);
   if (d.loss > 0) text += (text.empty() ? "" : ", ") + loss_text(d);
-  return text.empty() ? fmt::format("{}losses are the same to the digits held",
+  return text.empty() ? fmt::format("{}losses agree to the recorded digits",
                                     d.x ? "x and " : "")
                       : "relative change " + text;
 }
@@ -147,9 +147,8 @@ std::string undecided_text(const GateReport& report) {
   }
   if (asked == 0 || decided > 0) return "";
   return fmt::format(
-      "the clock decided 0 of {} cases: nothing is known about their times; "
-      "fewer cases (--filter), more seconds (--budget) or a wider --within "
-      "decide",
+      "the timing comparison decided 0 of {} cases; use fewer cases "
+      "(--filter), more seconds (--budget) or a wider --within",
       asked);
 }
 
@@ -198,11 +197,10 @@ std::string terminal_text(const GateReport& report) {
 std::string markdown_text(const GateReport& report) {
   const bool good = report.code() == ExitCode::good;
   const std::string undecided = undecided_text(report);
-  std::string text =
-      fmt::format("### physinv-bench gate: {}{}\n\n{}\n\n",
-                  good ? "passed" : "failed",
-                  undecided.empty() ? "" : ", the clock decided nothing",
-                  summary_text(report));
+  std::string text = fmt::format("### physinv-bench gate: {}{}\n\n{}\n\n",
+                                 good ? "passed" : "failed",
+                                 undecided.empty() ? "" : ", timing undecided",
+                                 summary_text(report));
   for (const auto& line : {undecided, largest_text(report)})
     if (!line.empty()) text += "- " + markdown(line) + '\n';
   for (const auto& note : report.notes) text += "- " + markdown(note) + '\n';

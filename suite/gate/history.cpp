@@ -269,7 +269,7 @@ bool PastBaseline::Stage::failed() const {
 PastBaseline past_baseline(std::string_view text) {
   PastBaseline past;
   if (!text.starts_with("physinv-bench baseline "))
-    throw std::runtime_error("it is no baseline");
+    throw std::runtime_error("it is not a baseline");
   bool counts = false;
   for (const std::string_view line : split(text, '\n')) {
     const auto words = split(line, ' ');

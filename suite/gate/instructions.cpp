@@ -62,7 +62,7 @@ std::uint64_t count(Counting counting,
                            : number_after(ended.errors, "Collected");
   if (ended.status != 0 || counted.value_or(0) == 0)
     throw EnvironmentError(fmt::format(
-        "the instructions of {} cannot be counted: {} ended with {}: {}",
+        "cannot count the instructions of {}: {} exited with {}: {}",
         name,
         counter_name(counting),
         ended.status,
@@ -99,8 +99,8 @@ std::string not_comparable(std::string_view counter,
 bool can_count(Counting counting, const fs::path& program, std::string* why) {
   if (!is_there(program)) {
     *why = fmt::format(
-        "there is no {}; the target physinv-count of a build for x86-64-v3, or "
-        "with tests, is it",
+        "there is no {}; build the target physinv-count for x86-64-v3 or with "
+        "tests",
         program.string());
     return false;
   }
@@ -109,7 +109,7 @@ bool can_count(Counting counting, const fs::path& program, std::string* why) {
       perf ? run_child({program.string(), "--perf"})
            : run_child({"valgrind", "--tool=callgrind", "--version"});
   if (ended.status == 0) return true;
-  *why = perf ? "the kernel gives no counter of instructions (" +
+  *why = perf ? "the kernel provides no instruction counter (" +
                     last_line(ended.errors) + ")"
               : "valgrind is not installed";
   return false;

@@ -31,7 +31,7 @@ std::vector<StageLine> run_traced(const std::vector<Case>& cases,
                                    screen);
   if (result.interrupted)
     throw ExitError(ExitCode::interrupted,
-                    fmt::format("interrupted; what had finished is in {}",
+                    fmt::format("interrupted; finished stages are in {}",
                                 options.out.string()));
   const auto names = names_of(cases);
   auto records = load_results(options.out).cases();

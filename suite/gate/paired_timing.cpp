@@ -85,9 +85,9 @@ std::vector<std::string> command(const fs::path& program,
 /// A sentence about a program that does not do what is asked of it.
 std::string ending_of(const std::string& program, const Ended& ended) {
   if (!ended.exceeded.empty())
-    return fmt::format("{} is killed: {}", program, ended.exceeded);
-  if (ended.status < 0) return program + " cannot be started";
-  return fmt::format("{} ended with {}: {}",
+    return fmt::format("{} was killed: {}", program, ended.exceeded);
+  if (ended.status < 0) return program + " cannot start";
+  return fmt::format("{} exited with {}: {}",
                      program,
                      ended.status,
                      ended.errors.substr(0, ended.errors.find('\n')));
@@ -103,7 +103,7 @@ std::string output_of(const std::vector<std::string>& arguments) {
 
 [[noreturn]] void refuse_program(const std::string& why) {
   throw EnvironmentError(
-      why + "; a physinv-bench or a directory with one lists its cases");
+      why + "; expected a physinv-bench or a directory that contains one");
 }
 
 constexpr double kLongestAnswer = 20;
@@ -146,10 +146,10 @@ Finding untimed_case(const std::string& name,
   return {.kind = "clock",
           .name = name,
           .verdict = lost ? "lost" : "not timed",
-          .detail = lost ? "a stage of the head came to no end that has a time"
+          .detail = lost ? "a stage of the head failed, was skipped or diverged"
                     : untimed.head
-                        ? "a stage came to no end that has a time"
-                        : "a stage of the base came to no end that has a time",
+                        ? "a stage failed, was skipped or diverged"
+                        : "a stage of the base failed, was skipped or diverged",
           .code = lost     ? ExitCode::accuracy
                   : strict ? ExitCode::inconclusive
                            : ExitCode::good,
@@ -181,7 +181,8 @@ std::set<std::string> cases_known_to(const fs::path& program,
       names.insert(c.at("name").get<std::string>());
     return names;
   } catch (const nlohmann::json::exception&) {
-    refuse_program(program.string() + " prints no list of cases as JSON");
+    refuse_program(program.string() +
+                   " does not print a list of cases as JSON");
   }
 }
 
@@ -189,8 +190,8 @@ void require_one_processor(const fs::path& base, const fs::path& head) {
   const auto of_base = processor_of(base), of_head = processor_of(head);
   if (of_base.empty() || of_head.empty() || of_base == of_head) return;
   throw UsageError(
-      fmt::format("{} is of {} and {} of {}; times of two processors are not "
-                  "compared",
+      fmt::format("{} is built for {} and {} for {}; times of different "
+                  "processors are not compared",
                   base.string(),
                   of_base,
                   head.string(),

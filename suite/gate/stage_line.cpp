@@ -54,7 +54,7 @@ std::uint64_t difference(std::uint64_t a, std::uint64_t b) {
 template <class T>
 T parse_number(std::string_view text) {
   if (const auto value = decimal<T>(text)) return *value;
-  throw std::runtime_error(fmt::format("'{}' is no number", text));
+  throw std::runtime_error(fmt::format("'{}' is not a number", text));
 }
 
 /// Cuts `text` at the first `mark`; what follows it stays in `text`.
@@ -89,7 +89,7 @@ int parse_digits(std::string_view text) {
   const int value = parse_number<int>(text);
   if (value < 0 || value > kMost64)
     throw std::runtime_error(fmt::format(
-        "digits={} is not from 0 to {}, nor {}", text, kMost64, kNone));
+        "digits={} is neither from 0 to {} nor {}", text, kMost64, kNone));
   return value;
 }
 

@@ -180,7 +180,8 @@ StageVerdict judge(const StageLine& before, const StageLine& now, Rules rules) {
     j.change = Change::better;
   } else if (!same && rules.bits) {
     j.change = Change::worse;
-    found.worse.emplace_back("other bits, and this build promises the same");
+    found.worse.emplace_back(
+        "other bits, although this build must reproduce them");
   } else if (!same) {
     j.change = Change::within;
   }
@@ -198,8 +199,7 @@ std::vector<StageVerdict> judge(const std::vector<StageLine>& before,
     if (at == have.end()) {
       all.push_back({.stage = line.name,
                      .change = Change::missing,
-                     .reasons = {.worse = {"not run, or not registered any "
-                                           "more"}},
+                     .reasons = {.worse = {"not run, or no longer registered"}},
                      .before = line,
                      .now = {}});
       continue;
@@ -211,7 +211,7 @@ std::vector<StageVerdict> judge(const std::vector<StageLine>& before,
     if (have.contains(line.name))
       all.push_back({.stage = line.name,
                      .change = Change::added,
-                     .reasons = {.other = {"the baseline does not hold it"}},
+                     .reasons = {.other = {"not in the baseline"}},
                      .before = {},
                      .now = line});
   return all;

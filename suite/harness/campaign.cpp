@@ -34,7 +34,7 @@ constexpr double kPatience = 3, kLeastPatience = 0.2, kPatienceOfBudget = 0.05;
 /// How often a case is started whose worker is killed.
 constexpr int kTries = 3;
 
-constexpr std::string_view kGoingOn = "going on with {} {} from iteration {}";
+constexpr std::string_view kGoingOn = "resuming {} {} from iteration {}";
 
 /// The beginning of the chain that the store holds. Stages that failed or
 /// were skipped are run again. With `among`, only stages that these cases ran.
@@ -230,7 +230,7 @@ class Campaign {
       for (auto& event : workers.wait(0.1)) handle(event);
     } while (workers.busy() && now().wall < end && stop_signals() == 1);
     for (const auto& [worker, index] : under_way)
-      find_state(index, positions_[worker], "laid down {} {} at iteration {}");
+      find_state(index, positions_[worker], "saved {} {} at iteration {}");
   }
 
   bool out_of_time() const {
@@ -387,14 +387,14 @@ class Campaign {
       if (!still_.found(worker, t, cpu_seconds(process))) continue;
       const CaseInfo& info = cases_[index].info;
       const auto stage = static_cast<std::size_t>(positions_[worker]);
-      progress_.say(fmt::format(
-          "{} {}: its worker stands still, for {:g} s neither a step nor time "
-          "on a core; it waits for another program, or for ever for a lock "
-          "(kill -ABRT {} fails the stage)",
-          info.name,
-          info.stages[std::min(stage, info.stages.size() - 1)],
-          still_.seconds(),
-          process));
+      progress_.say(
+          fmt::format("{} {}: its worker made no progress and used no CPU time "
+                      "for {:g} s; it waits for another program, or hangs in a "
+                      "lock (kill -ABRT {} fails the stage)",
+                      info.name,
+                      info.stages[std::min(stage, info.stages.size() - 1)],
+                      still_.seconds(),
+                      process));
     }
   }
 
@@ -446,12 +446,11 @@ class Campaign {
       return false;
     const CaseInfo& info = cases_[i].info;
     const auto stage = static_cast<std::size_t>(at->second);
-    progress_.say(
-        fmt::format("{} {} cannot go on from its state ({}); it "
-                    "starts again",
-                    info.name,
-                    info.stages[stage],
-                    event.message));
+    progress_.say(fmt::format(
+        "{} {} cannot resume from its checkpoint ({}); it starts again",
+        info.name,
+        info.stages[stage],
+        event.message));
     store_.drop_state(info.keys[stage]);
     restored_.erase(at);
     queue_.push_back(i);
@@ -561,7 +560,7 @@ void dry_run(const Prepared& prepared,
   }
   fmt::print(screen.stream,
              "{}{} cases: {} stages to run, {} to reuse; {:.3g} of {:.3g} "
-             "declared operations to do\n",
+             "declared operations left\n",
              table.text(screen.room()),
              prepared.cases.size(),
              run,

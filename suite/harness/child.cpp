@@ -30,7 +30,7 @@ int milliseconds_until(double end) {
 }
 
 std::string too_long(const ChildLimits& limits) {
-  return fmt::format("no end within {:g} s", limits.seconds);
+  return fmt::format("no exit within {:g} s", limits.seconds);
 }
 
 /// Reads both until both have ended, so that neither fills up. Returns the
@@ -43,7 +43,7 @@ std::string drain(std::array<pollfd, 2> ends,
   int open = 2;
   while (open > 0) {
     const int ready = poll(ends.data(), ends.size(), milliseconds_until(last));
-    if (ready < 0 && errno != EINTR) return "its output cannot be read";
+    if (ready < 0 && errno != EINTR) return "cannot read its output";
     if (ready <= 0 && milliseconds_until(last) == 0) return too_long(limits);
     for (std::size_t i = 0; ready > 0 && i < ends.size(); ++i) {
       if (ends[i].fd < 0 || ends[i].revents == 0) continue;

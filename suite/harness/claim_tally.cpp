@@ -29,10 +29,10 @@ std::vector<std::string> expected_to_fail(
   for (std::string name; std::getline(list >> std::ws, name, ',');) {
     name.erase(name.find_last_not_of(' ') + 1);
     if (!known.contains(name))
-      throw UsageError(fmt::format(
-          "--expected: there is no claim '{}'; name claims as 'report' shows "
-          "them, experiment and id, with commas between",
-          name));
+      throw UsageError(
+          fmt::format("--expected: there is no claim '{}'; give experiment and "
+                      "id as 'report' prints them, separated by commas",
+                      name));
     expected.push_back(name);
   }
   return expected;

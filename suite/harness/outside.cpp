@@ -40,8 +40,8 @@ std::vector<std::string> outside_problems() {
           seen.emplace(file.path, std::pair(file.hash, o.name));
       if (!fresh && at->second.first != file.hash)
         wrong.push_back(
-            fmt::format("{} and {} were built from two states of {}; build "
-                        "both anew",
+            fmt::format("{} and {} were built from different versions of {}; "
+                        "build both again",
                         at->second.second,
                         o.name,
                         file.path));

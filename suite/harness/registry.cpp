@@ -32,7 +32,8 @@ void check_overrides(const Overrides& o,
                      const Registry::Experiments& experiments) {
   for (const Index n : o.n.value_or(std::vector<Index>{})) {
     if (n < 1)
-      throw UsageError(fmt::format("n={} has no problems; n is at least 1", n));
+      throw UsageError(
+          fmt::format("n={} has no problems; n must be at least 1", n));
   }
   if (o.iterations && *o.iterations < 1)
     throw UsageError("iterations must be at least 1");
@@ -42,7 +43,7 @@ void check_overrides(const Overrides& o,
       for (const Method& m : e->methods) known.insert(m.id);
     if (!known.contains(id))
       throw UsageError(fmt::format(
-          "unknown method '{}'; of {} the nearest are {}",
+          "unknown method '{}' of {}; nearest: {}",
           id,
           known.size(),
           fmt::join(nearest_words({known.begin(), known.end()}, id), ", ")));
@@ -129,8 +130,9 @@ std::vector<Case> Registry::expand(std::string_view profile,
                                    const Overrides& overrides) const {
   const auto known = profiles();
   if (std::find(known.begin(), known.end(), profile) == known.end())
-    throw UsageError(fmt::format(
-        "unknown profile '{}'; known are {}", profile, fmt::join(known, ", ")));
+    throw UsageError(fmt::format("unknown profile '{}'; known profiles: {}",
+                                 profile,
+                                 fmt::join(known, ", ")));
   check_overrides(overrides, experiments_);
   const bool as_declared = !overrides.n && !overrides.iterations &&
                            !overrides.methods && !overrides.seeds &&
@@ -147,7 +149,7 @@ std::vector<Case> Registry::expand(std::string_view profile,
     count += row.n.size() * row.seeds.size() * static_cast<std::size_t>(there);
     if (count > kMostCases)
       throw UsageError(fmt::format(
-          "profile {} has more than {} cases so; fewer n or seeds are right",
+          "profile {} would have more than {} cases; give fewer n or seeds",
           profile,
           kMostCases));
   };
@@ -156,10 +158,10 @@ std::vector<Case> Registry::expand(std::string_view profile,
     if (is_new) {
       cases.push_back(std::move(c));
     } else if (as_declared && !same_work(cases[at->second], c)) {
-      throw std::logic_error(fmt::format(
-          "{} stands in two rows of profile {} with different options",
-          c.info.name,
-          profile));
+      throw std::logic_error(
+          fmt::format("{} is in two rows of profile {} with different options",
+                      c.info.name,
+                      profile));
     }
   };
   for (const auto& e : experiments_) {

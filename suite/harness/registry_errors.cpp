@@ -58,11 +58,11 @@ std::vector<std::string> unreached_sources(const Registry& registry) {
   for (const Outside& o : outsides())
     for (const std::string_view path : o.computing)
       if (!reached.contains(std::string(path)))
-        wrong.push_back(fmt::format(
-            "{}: no stage's numbers come from it, so that its edits would go "
-            "unseen; name it as the header that it implements, or in sources() "
-            "of its stage",
-            path));
+        wrong.push_back(
+            fmt::format("{}: no stage depends on it, so edits would not "
+                        "invalidate results; name it like the header that it "
+                        "implements, or list it in sources() of its stage",
+                        path));
   return wrong;
 }
 
@@ -71,7 +71,7 @@ std::vector<std::string> errors_of(const Experiment& e) {
   const auto add = [&](const std::string& text) {
     wrong.push_back(e.name + ": " + text);
   };
-  if (!is_path(e.name)) add("the name is no path of [a-z0-9_-]");
+  if (!is_path(e.name)) add("the name is not a path of [a-z0-9_-]");
   if (!e.problem.make_float || !e.problem.make_double)
     add("there is no problem");
   std::set<std::string> seen;
@@ -102,7 +102,7 @@ std::vector<std::string> errors_of(const Experiment& e) {
     for (const Row& row : p.rows) {
       for (const auto& id : row.methods) {
         if (find_method(e, id) == nullptr)
-          add(fmt::format("profile {} names method {}, known are {}",
+          add(fmt::format("profile {} names method {}; known methods: {}",
                           p.name,
                           id,
                           method_ids(e)));
@@ -157,7 +157,7 @@ std::string objection(const Registry& registry,
   if (!stage)
     return fmt::format("the unknown stage '{}' of {}", select.stage, m->id);
   if (!runs_from(*e, claim.judged_from(), select))
-    return fmt::format("'{}', which no profile from {} on runs",
+    return fmt::format("'{}', which neither profile {} nor a later one runs",
                        select.text(),
                        claim.judged_from());
   return "";
@@ -180,7 +180,7 @@ void check_claims(const Registry& registry,
           const auto why = objection(registry, experiment, claim, select);
           if (!why.empty())
             wrong.push_back(fmt::format(
-                "{}: claim {} asks for {}", experiment, claim.id, why));
+                "{}: claim {} needs {}", experiment, claim.id, why));
         }
       }
     }

@@ -43,23 +43,25 @@ bool is_end(Stop stop) {
 void check_outcome(Outcome& out, const Oracle& oracle) {
   const Index n = oracle.count(), unknowns = oracle.shape().unknowns;
   if (out.stop == Stop::failed || out.stop == Stop::skipped)
-    refuse(out.message.empty() ? "the stage says that it failed" : out.message);
+    refuse(out.message.empty()
+               ? "the stage reported a failure without a message"
+               : out.message);
   if (!is_end(out.stop))
-    refuse(fmt::format("the stage ended as {}, which is no end of a stage",
+    refuse(fmt::format("the stage ended with the invalid code {}",
                        static_cast<int>(out.stop)));
   if (out.x.rows() != unknowns || out.x.cols() != n)
-    refuse(
-        fmt::format("the stage left {} estimates of {} unknowns where {} "
-                    "of {} are expected",
-                    out.x.cols(),
-                    out.x.rows(),
-                    n,
-                    unknowns));
+    refuse(fmt::format(
+        "the stage returned {} estimates of {} unknowns; expected {} of {}",
+        out.x.cols(),
+        out.x.rows(),
+        n,
+        unknowns));
   if (out.status.empty())
     out.status.assign(static_cast<std::size_t>(n), Status::maxiter);
   if (static_cast<Index>(out.status.size()) != n)
-    refuse(fmt::format(
-        "the stage left {} statuses for {} examples", out.status.size(), n));
+    refuse(fmt::format("the stage returned {} statuses for {} examples",
+                       out.status.size(),
+                       n));
   if (out.iterations.size() == 0) out.iterations.setZero(n);
   if (out.evaluations.size() == 0) out.evaluations.setZero(n);
 }
@@ -214,7 +216,7 @@ void run_stage(const Case& c,
   fill(record, c, out, oracle, probe);
   if (const auto flaw = flaw_of_new(record, c.method->chain.size());
       !flaw.empty())
-    refuse("the stage left what cannot be stored: " + flaw);
+    refuse("the stage returned values that cannot be stored: " + flaw);
   record.clocks.setup += made - begin;
   if (trace) record.trajectory = hex64(probe.trajectory());
   previous = std::move(out);

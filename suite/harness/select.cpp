@@ -18,20 +18,19 @@ std::shared_ptr<const RE2> compiled(const std::string& pattern,
                                     const std::string& text,
                                     std::string_view whose) {
   if (text.size() > kLongestPattern)
-    throw UsageError(
-        fmt::format("{} is a regular expression of {} characters; up to {} are "
-                    "searched in case names",
-                    whose,
-                    text.size(),
-                    kLongestPattern));
+    throw UsageError(fmt::format(
+        "{} is a regular expression of {} characters; the limit is {}",
+        whose,
+        text.size(),
+        kLongestPattern));
   RE2::Options options;
   options.set_log_errors(false);
   options.set_max_mem(kPatternMemory);
   auto compiled = std::make_shared<const RE2>(text, options);
   if (!compiled->ok())
     throw UsageError(fmt::format(
-        "{}='{}' is no regular expression ({}); it is searched in case names, "
-        "e.g. --filter='billiards/(jpo|bfgs)/'",
+        "{}='{}' is not a regular expression ({}); expected one that is "
+        "searched in case names, e.g. --filter='billiards/(jpo|bfgs)/'",
         whose,
         pattern,
         compiled->error()));
@@ -48,7 +47,7 @@ NameFilter::NameFilter(const std::vector<std::string>& patterns,
     if (all > kLongestPatterns)
       throw UsageError(
           fmt::format("{} has regular expressions of more than {} characters "
-                      "together; --cases takes names from a file",
+                      "in total; --cases reads names from a file",
                       whose,
                       kLongestPatterns));
     const bool negative = pattern.starts_with('-');

@@ -103,14 +103,14 @@ std::string SourceGraph::why_not(const std::string& root) const {
   for (const std::size_t at : candidates(root))
     names.push_back(nodes_[at].path);
   if (!names.empty())
-    return fmt::format("'{}' may be {}; name one of them in full",
+    return fmt::format("'{}' is ambiguous: {}; give one of these paths in full",
                        root,
                        fmt::join(names, " or "));
-  return fmt::format("no source of numbers '{}'", root) +
-         (places_.empty() ? ""
-                          : "; its file is to stand in SOURCES, the class of a "
-                            "problem in <name>.h or in what its recipe calls "
-                            "its source");
+  return fmt::format("there is no source '{}'", root) +
+         (places_.empty()
+              ? ""
+              : "; list its file in SOURCES; the class of a problem is "
+                "expected in <name>.h or in the source that its recipe names");
 }
 
 std::string SourceGraph::find(std::string_view path) const {
@@ -171,10 +171,10 @@ std::vector<std::string> SourceGraph::errors(const Sources& sources) const {
   for (std::size_t i = 0; i < nodes_.size(); ++i)
     for (std::size_t k = 0; found[i] && k < nodes_[i].next.size(); ++k)
       if (nodes_[i].next[k] == kNowhere && nodes_[i].includes[k] != kArrayTable)
-        wrong.push_back(
-            fmt::format("numbers come from {}, but changes of {} go unseen",
-                        nodes_[i].path,
-                        nodes_[i].includes[k]));
+        wrong.push_back(fmt::format(
+            "results depend on {}, but changes of {} would not invalidate them",
+            nodes_[i].path,
+            nodes_[i].includes[k]));
   return wrong;
 }
 

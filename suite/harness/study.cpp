@@ -16,7 +16,7 @@ const std::map<std::string, std::string>& studies() { return known(); }
 
 bool register_study(const std::string& study, const std::string& varied) {
   SUITE_CHECK(study != varied && !studies().contains(varied),
-              "a study varies an experiment that is none");
+              "a study varies an experiment that does not exist");
   const auto [at, first] = known().emplace(study, varied);
   SUITE_CHECK(first || at->second == varied,
               "a study varies one experiment: " + study);

@@ -170,12 +170,12 @@ void verify_stage(const Experiment& experiment,
       stage.x.rows() != shape.unknowns ||
       c.data.y.rows() != shape.observations ||
       c.data.given.rows() != shape.given || c.data.given.cols() != n) {
-    report.mismatches.push_back(
-        fmt::format("{} {}: solutions of {} examples stored, data of {}",
-                    c.info.name,
-                    stage.stage,
-                    stage.x.cols(),
-                    n));
+    report.mismatches.push_back(fmt::format(
+        "{} {}: the store has solutions of {} examples, but data of {}",
+        c.info.name,
+        stage.stage,
+        stage.x.cols(),
+        n));
     return;
   }
   for (Index i = 0; i < stage.x.cols(); ++i) {

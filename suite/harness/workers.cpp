@@ -204,14 +204,16 @@ void Workers::start(Worker& worker) {
   int pair[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0)
     throw EnvironmentError(fmt::format(
-        "no socket for a worker ({}); try fewer --jobs", std::strerror(errno)));
+        "cannot create a socket for a worker ({}); try fewer --jobs",
+        std::strerror(errno)));
   std::fflush(nullptr);
   const pid_t parent = getpid();
   const pid_t pid = fork();
   if (pid < 0) {
     close(pair[0]), close(pair[1]);
-    throw EnvironmentError(fmt::format(
-        "no worker process ({}); try fewer --jobs", std::strerror(errno)));
+    throw EnvironmentError(
+        fmt::format("cannot create a worker process ({}); try fewer --jobs",
+                    std::strerror(errno)));
   }
   if (pid == 0) {
     become_worker(pair[1], parent);
@@ -304,7 +306,7 @@ std::vector<WorkerEvent> Workers::wait(double seconds) {
     if (w.busy) {
       events.push_back(std::move(event));
     } else if (++idle_deaths_ > 3) {
-      throw EnvironmentError(event.message + " while idle, again and again");
+      throw EnvironmentError(event.message + " while idle, repeatedly");
     }
     if (!dismissed_) start(w);
   }

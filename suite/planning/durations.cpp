@@ -59,7 +59,7 @@ Durations Durations::read(const fs::path& file) {
     const auto line = line_of(text);
     if (!line)
       throw StoreError(fmt::format(
-          "{}, line {}, is no duration of a stage", file.string(), number));
+          "{}, line {}, is not a duration of a stage", file.string(), number));
     const auto& [n, operations, seconds, least, most, bytes] = line->numbers;
     all.rows_[{line->texts[0], line->texts[1], line->texts[2]}].push_back(
         {static_cast<Index>(n), operations, {seconds, least, most}, bytes});

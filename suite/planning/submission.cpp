@@ -109,7 +109,7 @@ ChildLimits slurm_limits() {
   limits.seconds = decimal<double>(text).value_or(0);
   if (!(limits.seconds > 0 && limits.seconds <= kLongest))
     throw UsageError(fmt::format(
-        "{}={} is no number of seconds up to {:g}", kName, text, kLongest));
+        "{}={} is not a number of seconds up to {:g}", kName, text, kLongest));
   return limits;
 }
 
@@ -137,10 +137,10 @@ std::string job_id(const std::string& output) {
   for (std::string line; std::getline(lines, line);) id = line;
   id = id.substr(0, id.find(';'));
   if (!is_number(id) || id.size() > kLongestId)
-    throw EnvironmentError(fmt::format(
-        "sbatch answers '{}', which is no id of a job; squeue shows whether it "
-        "took one",
-        one_line(id.substr(0, 100))));
+    throw EnvironmentError(
+        fmt::format("sbatch printed '{}' instead of a job id; check with "
+                    "squeue whether it accepted the job",
+                    one_line(id.substr(0, 100))));
   return id;
 }
 
@@ -170,15 +170,15 @@ std::string sbatch(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {"sbatch", "--parsable"});
   const Ended r = run_child(arguments, slurm_limits());
   if (!r.exceeded.empty())
-    throw EnvironmentError(fmt::format(
-        "sbatch does not answer ({}); squeue shows whether it took a job, and "
-        "PHYSINV_SLURM_SECONDS gives it more time",
-        r.exceeded));
+    throw EnvironmentError(
+        fmt::format("sbatch does not respond ({}); check with squeue whether "
+                    "it accepted the job, and raise PHYSINV_SLURM_SECONDS",
+                    r.exceeded));
   if (r.status != 0) {
     const std::string text = r.output + r.errors;
     throw SlurmRefuses(fmt::format(
-        "sbatch refuses: {}",
-        text.empty() ? "no answer" : one_line(text.substr(0, 300))));
+        "sbatch failed: {}",
+        text.empty() ? "no message" : one_line(text.substr(0, 300))));
   }
   return job_id(r.output);
 }
@@ -234,7 +234,7 @@ bool Submission::exists(const fs::path& directory) {
 Submission Submission::read(const fs::path& directory) {
   if (!exists(directory))
     throw UsageError(fmt::format(
-        "'{}' holds no submitted campaign; 'submit --slurm {}' makes one",
+        "'{}' contains no submitted campaign; 'submit --slurm {}' creates one",
         directory.string(),
         directory.string()));
   Submission s;
@@ -256,7 +256,7 @@ Submission Submission::read(const fs::path& directory) {
   } catch (const json::exception&) {
   }
   throw StoreError(fmt::format(
-      "{} is damaged (delete it and submit again: finished stages are kept)",
+      "{} is damaged (delete it and submit again: finished stages are reused)",
       (directory / "submission.json").string()));
 }
 
@@ -302,10 +302,10 @@ fs::path Submission::shard(std::size_t task) const {
 
 void require_expressible(const fs::path& directory) {
   if (directory.string().find('\\') != std::string::npos)
-    throw UsageError(fmt::format(
-        "Slurm takes a backslash in the name of a file for its own; '{}' needs "
-        "another name",
-        directory.string()));
+    throw UsageError(
+        fmt::format("Slurm interprets backslashes in file names; choose a name "
+                    "without them instead of '{}'",
+                    directory.string()));
 }
 
 std::vector<TaskState> states_of(const Submission& s) {
@@ -331,12 +331,13 @@ std::string ask_queue(const Submission& s, std::vector<TaskState>& states) {
   const Ended queue =
       run_child({"squeue", "-h", "-r", "-o", "%F %K %T"}, slurm_limits());
   if (!queue.exceeded.empty())
-    return fmt::format("squeue does not answer ({})", queue.exceeded);
+    return fmt::format("squeue does not respond ({})", queue.exceeded);
   if (queue.status != 0)
-    return fmt::format(
-        "squeue ends with status {} {}", queue.status, one_line(queue.errors));
+    return fmt::format("squeue exited with status {} {}",
+                       queue.status,
+                       one_line(queue.errors));
   const auto lines = queue_lines(queue.output);
-  if (!lines) return "squeue answers something that is no queue";
+  if (!lines) return "squeue printed something other than a queue";
   for (const QueueLine& line : *lines) {
     const auto task = task_number(line.task, states.size());
     if (task &&
@@ -364,8 +365,8 @@ std::string submit_array(const Submission& s,
     return sbatch(array);
   } catch (const SlurmRefuses& error) {
     throw EnvironmentError(fmt::format(
-        "{}; {} tasks were asked for{}: other --tasks, --jobs or --threads of "
-        "the next submit count, options of sbatch follow --",
+        "{}; {} tasks were requested{}: change --tasks, --jobs or --threads in "
+        "the next submit, or add options of sbatch after --",
         error.what(),
         tasks.size(),
         array_limit()));

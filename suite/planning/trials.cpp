@@ -137,7 +137,7 @@ StageTrial from_json(const json& j) {
   const std::vector<double> v = j;
   for (const double value : v)
     if (!(value >= 0 && value < kLargest))
-      throw std::runtime_error("a time or size that cannot be");
+      throw std::runtime_error("an impossible time or size");
   StageTrial t{v.at(0), v.at(1), v.at(2), v.at(3), v.at(4), v.at(5), v.at(6)};
   if (t.n < 1) throw std::runtime_error("a trial without samples");
   return t;
@@ -178,11 +178,11 @@ std::map<std::string, Trial> parse_trials(std::string_view bytes,
     }
     return known;
   } catch (const std::exception& e) {
-    throw StoreError(fmt::format(
-        "{} holds what no run measures: {} (delete it: the speeds are "
-        "measured again)",
-        path.string(),
-        e.what()));
+    throw StoreError(
+        fmt::format("{} contains invalid measurements: {} (delete it: the "
+                    "speeds are measured again)",
+                    path.string(),
+                    e.what()));
   }
 }
 
@@ -210,7 +210,7 @@ fs::path Trials::default_file() {
 }
 
 std::string Trials::warning() const {
-  return file_.empty() ? "speeds are measured and not kept: neither "
+  return file_.empty() ? "measured speeds are not saved: neither "
                          "XDG_CACHE_HOME nor HOME is an absolute path"
                        : "";
 }

@@ -56,7 +56,7 @@ std::string read_text(hid_t parent, const char* name) {
 
 Status status_of(std::int32_t code) {
   if (code < 0 || code > static_cast<std::int32_t>(kStatuses.back()))
-    throw StoreError("an array status holds what is no status");
+    throw StoreError("the array status contains an invalid status");
   return static_cast<Status>(code);
 }
 
@@ -69,21 +69,23 @@ void require_sound(const CaseData& data) {
   for (const auto& [name, array] :
        {std::pair("x", &data.x), {"y", &data.y}, {"given", &data.given}}) {
     if (array->rows() > 0 && array->cols() != data.y.cols())
-      throw StoreError(fmt::format(
-          "array data/{} has the shape {} where {} examples are expected "
-          "(restore the file)",
-          name,
-          shape_text(*array),
-          data.y.cols()));
+      throw StoreError(
+          fmt::format("array data/{} has the shape {}; expected {} examples "
+                      "(restore the file)",
+                      name,
+                      shape_text(*array),
+                      data.y.cols()));
     if (!array->allFinite())
-      throw StoreError(fmt::format(
-          "array data/{} holds what is no number (restore the file)", name));
+      throw StoreError(
+          fmt::format("array data/{} contains values that are not finite "
+                      "(restore the file)",
+                      name));
   }
   const bool none = data.hash.empty() && data.y.size() == 0;  // not drawn
   if (!none && hex64(content_hash({data.x, data.y, data.given})) != data.hash)
     throw StoreError(
-        "the arrays of data do not have their hash (restore the file, or "
-        "delete it to run the stages of this case again)");
+        "the hash of the data arrays is wrong (restore the file, or delete it "
+        "to run the stages of this case again)");
 }
 
 std::string group_name(const StageRecord& r) {
@@ -121,7 +123,8 @@ void read(hid_t group, const ArrayPlace& at, Vector<double>& to) {
   const Batch<double> all = read_array(group, at.name_text());
   if (hdf5::rank(group, at.name_text()) == 2 && all.cols() != 1 &&
       all.size() > 0)
-    throw StoreError(fmt::format("array {} is no list of examples", at.name));
+    throw StoreError(
+        fmt::format("array {} is not a list of examples", at.name));
   to = all.reshaped();
 }
 void read(hid_t group, const ArrayPlace& at, Batch<double>& to) {
@@ -170,10 +173,10 @@ std::string verified(std::string bytes, const fs::path& path) {
       return bytes;
     }
   }
-  throw StoreError(fmt::format(
-      "{} is damaged: it fails its checksum (restore it, or delete it to run "
-      "the stages of this case again)",
-      path.string()));
+  throw StoreError(
+      fmt::format("{} is damaged: its checksum is wrong (restore it, or delete "
+                  "it to run the stages of this case again)",
+                  path.string()));
 }
 
 }  // namespace
@@ -228,15 +231,15 @@ CaseFile::CaseFile(std::string bytes,
     const std::string name = hdf5::read_attribute(file_, "case");
     if (name != case_name)
       throw StoreError(fmt::format(
-          "it holds the case {}, not {} (restore it)", name, case_name));
+          "it contains the case {}, not {} (restore it)", name, case_name));
     const auto version = version_of(file_);
     if (version > kCaseVersion)
-      throw UnreadableInput(fmt::format(
-          "{}: it is of version {}, this program reads up to {} (use the "
-          "program that wrote it or a newer one)",
-          where_,
-          version,
-          kCaseVersion));
+      throw UnreadableInput(
+          fmt::format("{}: its version is {}, this program reads up to {} (use "
+                      "the program that wrote it or a newer one)",
+                      where_,
+                      version,
+                      kCaseVersion));
   });
 }
 
@@ -417,10 +420,10 @@ void CaseFile::read_stage(StageRecord& r, const std::string& hash) const {
       throw StoreError(fmt::format(
           "array stages/{}/{} (restore the file)", group_name(r), flaw));
     if (hex64(arrays_hash(r)) != hash)
-      throw StoreError(fmt::format(
-          "stage {} does not have the hash of its journal line (delete the "
-          "file to run the stages of this case again)",
-          r.stage));
+      throw StoreError(
+          fmt::format("the hash of stage {} differs from its journal line "
+                      "(delete the file to run the stages of this case again)",
+                      r.stage));
   });
 }
 

@@ -35,15 +35,16 @@ Catalog Catalog::read(const fs::path& directory) {
   const bool there = fs::is_directory(directory, error);
   if (there && !Folder(directory).has(path.filename()) &&
       is_begun(Folder(directory))) {
-    catalog.warnings_.push_back(fmt::format(
-        "{}: a run began there, and nothing has finished", directory.string()));
+    catalog.warnings_.push_back(
+        fmt::format("{}: a run started there, but no stage has finished",
+                    directory.string()));
     return catalog;
   }
   if (!there || !Folder(directory).has(path.filename()))
-    throw UnreadableInput(fmt::format(
-        "{}: no results there (there is no {}; give the --out of a run)",
-        directory.string(),
-        path.filename().string()));
+    throw UnreadableInput(
+        fmt::format("{}: no results (it has no {}; give the --out of a run)",
+                    directory.string(),
+                    path.filename().string()));
   catalog.journal_ = read_journal(path);
   for (auto& entry : catalog.journal_.entries) catalog.add(std::move(entry));
   catalog.journal_.entries.clear();
@@ -158,8 +159,8 @@ CaseRecord Catalog::case_record(const std::string& name) const {
       continue;
     if (own->data_hash != record.data.hash)
       throw StoreError(fmt::format(
-          "{}: its data are not those of the journal's line of stage {} "
-          "(restore it, or delete it to run the stages of this case again)",
+          "{}: its data differ from the journal line of stage {} (restore it, "
+          "or delete it to run the stages of this case again)",
           case_path(name).string(),
           own->stage.stage));
     record.stages.push_back(own->stage);

@@ -26,10 +26,11 @@ std::string_view advice(int error_number) {
   switch (error_number) {
     case ENOSPC:
     case EDQUOT:
-      return "make space or choose another --out; finished stages are kept";
+      return "free some space or choose another --out; finished stages are "
+             "saved";
     case EFBIG:
       return "raise the limit on file sizes (ulimit -f); finished stages are "
-             "kept";
+             "saved";
     case EACCES:
     case EPERM:
       return "allow this user to write there or choose another --out";
@@ -193,8 +194,8 @@ std::string read_all(const FileDescriptor& fd,
   const auto size = static_cast<std::uint64_t>(info.st_size);
   if (size > limit)
     throw StoreError(
-        fmt::format("cannot read {}: it has {} bytes, and such a file at most "
-                    "{} (restore it or choose another path)",
+        fmt::format("cannot read {}: it has {} bytes, the limit is {} (restore "
+                    "it or choose another path)",
                     path.string(),
                     size,
                     limit));

@@ -26,7 +26,7 @@ constexpr int kDirectory = O_RDONLY | O_DIRECTORY | O_CLOEXEC;
 std::string new_name(std::string_view end) {
   std::uint64_t bits = 0;
   if (::getrandom(&bits, sizeof(bits), 0) != sizeof(bits))
-    throw StoreError("the system gives no random numbers (try again)");
+    throw StoreError("the system has no random numbers (try again)");
   return fmt::format("{}{}{}", kAside, hex64(bits), end);
 }
 
@@ -35,7 +35,7 @@ const char* component(const std::string& name) {
   if (name.empty() || name == "." || name == ".." ||
       name.find('/') != std::string::npos ||
       name.find('\0') != std::string::npos)
-    throw StoreError(fmt::format("'{}' is no name of a file in a store", name));
+    throw StoreError(fmt::format("'{}' is not a file name in a store", name));
   return name.c_str();
 }
 

@@ -109,7 +109,7 @@ void require_own(hid_t parent, const std::string& name) {
   H5L_info_t info;
   check(H5Lget_info(parent, name.c_str(), &info, H5P_DEFAULT), "find " + name);
   if (info.type != H5L_TYPE_HARD)
-    throw StoreError(fmt::format("{} is a link to something elsewhere", name));
+    throw StoreError(fmt::format("{} is a link to another file", name));
 }
 
 /// As the suite writes them: one block in this file, without filters, which
@@ -120,8 +120,8 @@ void require_plain(const Handle& set, const std::string& name) {
   const H5D_layout_t layout = H5Pget_layout(made);
   if ((layout != H5D_CONTIGUOUS && layout != H5D_COMPACT) ||
       H5Pget_external_count(made) != 0 || H5Pget_nfilters(made) != 0)
-    throw StoreError(
-        fmt::format("array {} is not stored as the suite stores it", name));
+    throw StoreError(fmt::format(
+        "array {} has another storage layout than this program writes", name));
 }
 
 Handle open_array(hid_t parent, const std::string& name) {
@@ -164,7 +164,7 @@ std::vector<hsize_t> shape_of(const Handle& set,
            : numbers == H5T_INTEGER || H5Tequal(type, status_type()) > 0;
   if (!good)
     throw StoreError(fmt::format(
-        "array {} holds other than {} numbers", name, real ? "real" : "whole"));
+        "array {} does not contain {} numbers", name, real ? "real" : "whole"));
   if (H5Sget_simple_extent_ndims(space) != rank)
     throw StoreError(
         fmt::format("array {} does not have {} dimensions", name, rank));
@@ -172,7 +172,7 @@ std::vector<hsize_t> shape_of(const Handle& set,
   check(H5Sget_simple_extent_dims(space, shape.data(), nullptr),
         "read shape of " + name);
   if (!holds_all(set, H5Tget_size(type), shape))
-    throw StoreError(fmt::format("array {} is not all there", name));
+    throw StoreError(fmt::format("array {} is incomplete", name));
   return shape;
 }
 

@@ -340,11 +340,11 @@ void check_form(std::string_view image) {
   try {
     Walk(image).file();
   } catch (const Refused& refused) {
-    throw StoreError(fmt::format(
-        "{}{} is not of a form that this program reads (restore it, "
-        "or use the program that wrote it)",
-        refused.path.empty() ? "" : refused.path + ": ",
-        refused.what));
+    throw StoreError(
+        fmt::format("{}{} has a format that this program does not read "
+                    "(restore it, or use the program that wrote it)",
+                    refused.path.empty() ? "" : refused.path + ": ",
+                    refused.what));
   }
 }
 

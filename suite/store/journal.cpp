@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::size_t kPrefix = 9;  // digits and a space
-constexpr const char* kNoKey = "a key is not 32 hexadecimal digits";
+constexpr const char* kNoKey = "a key does not have 32 hexadecimal digits";
 constexpr const char* kNoWord =
     "method, profile or a stage is not in [a-z0-9_-]";
 
@@ -89,14 +89,15 @@ void check_header(const fs::path& path, std::string_view line) {
   const json header = parse_line(line);
   const auto version = whole(header.at("schema_version"));
   if (version > kSchemaVersion) {
-    throw UnreadableInput(fmt::format(
-        "{}: its results have schema version {}, this program reads up to {} "
-        "(use the program that wrote them or a newer one)",
-        path.string(),
-        version,
-        kSchemaVersion));
+    throw UnreadableInput(
+        fmt::format("{}: the schema version is {}, this program reads up to {} "
+                    "(use the program that wrote it or a newer one)",
+                    path.string(),
+                    version,
+                    kSchemaVersion));
   }
-  if (version < 1) fail_line(path, 1, 0, line, "is no journal's header");
+  if (version < 1)
+    fail_line(path, 1, 0, line, "is not the header of a journal");
 }
 
 void require(bool good, const char* what) {
@@ -104,12 +105,12 @@ void require(bool good, const char* what) {
 }
 
 void check_stage(const StageRecord& r, const CaseInfo& info) {
-  require(r.case_name == info.name, "a stage is of another case");
+  require(r.case_name == info.name, "a stage belongs to another case");
   require(is_key(r.key), kNoKey);
   require(is_word(r.stage), kNoWord);
   require(
       r.position >= 0 && r.position < static_cast<Index>(info.stages.size()),
-      "a stage is not in its chain");
+      "a stage is not in the chain of its case");
 }
 
 JournalEntry entry_of(std::string_view line) {
@@ -141,8 +142,9 @@ std::string utc() {
 }  // namespace
 
 void check_case(const CaseInfo& c) {
-  require(is_case_name(c.name) && is_path(c.experiment),
-          "its name is no path of [a-z0-9_.=+-] of at most 250 characters");
+  require(
+      is_case_name(c.name) && is_path(c.experiment),
+      "its name is not a path of [a-z0-9_.=+-] with at most 250 characters");
   require(is_word(c.method) && is_word(c.profile), kNoWord);
   for (const auto& stage : c.stages) require(is_word(stage), kNoWord);
   for (const auto& key : c.keys) require(is_key(key), kNoKey);
@@ -164,10 +166,10 @@ JournalText parse_journal(std::string_view bytes, const fs::path& path) {
     const auto line = bytes.substr(begin, ended ? end - begin : end);
     if (!ended || !intact(line)) {
       if (number == 0 || ended || hides_line(line))
-        fail_line(path, number + 1, begin, line, "fails its checksum");
+        fail_line(path, number + 1, begin, line, "has a wrong checksum");
       text.warning = fmt::format(
-          "{}: line {}, at byte {}, was cut off while it was written; its "
-          "stage runs again",
+          "{}: line {}, at byte {}, is incomplete, because writing it was "
+          "interrupted; its stage runs again",
           path.string(),
           number + 1,
           begin);
@@ -188,7 +190,7 @@ JournalText parse_journal(std::string_view bytes, const fs::path& path) {
                 number + 1,
                 begin,
                 line,
-                fmt::format("is not what the suite writes: {}", e.what()));
+                fmt::format("is invalid: {}", e.what()));
     }
     begin = end + 1;
     text.good_bytes = begin;
@@ -260,7 +262,7 @@ void Journal::append(std::span<const JournalEntry> entries) {
   for (const JournalEntry& entry : entries) lines += to_line(to_object(entry));
   if (size_ + lines.size() > kLargestData)
     throw StoreError(fmt::format(
-        "{} would be larger than what is read, {} bytes (choose another --out)",
+        "{} would exceed the size limit of {} bytes (choose another --out)",
         path_.string(),
         kLargestData));
   try {

@@ -37,7 +37,7 @@ bool is_shallow(std::string_view text) {
 
 double time_from(const json& j) {
   if (!j.is_number() || !std::isfinite(j.get<double>()) || j.get<double>() < 0)
-    throw std::runtime_error("a time is no number of seconds");
+    throw std::runtime_error("a time is not a number of seconds");
   return j;
 }
 
@@ -71,7 +71,7 @@ void read_binary(const json& j, Array& to) {
 
 template <class Json>
 Json parse_json(std::string_view text) {
-  if (!is_shallow(text)) throw std::runtime_error("it is nested too deep");
+  if (!is_shallow(text)) throw std::runtime_error("it is nested too deeply");
   return Json::parse(text);
 }
 template json parse_json(std::string_view);

@@ -87,7 +87,7 @@ struct Owner {
     return fmt::format("{} {} {}\n", host, process, boot);
   }
   std::string name() const {
-    return process == 0 ? "a process unknown"
+    return process == 0 ? "an unknown process"
                         : fmt::format("process {} on {}", process, host);
   }
 };
@@ -141,8 +141,7 @@ FileDescriptor open_lock(const Folder& folder) {
     fail_file("lock", folder.path() / kLock, errno);
   if (info.st_nlink > 1)
     throw StoreError(fmt::format(
-        "cannot lock {}: the same file has other names, and would change under "
-        "them (delete this one)",
+        "cannot lock {}: other hard links to this file exist (delete this one)",
         (folder.path() / kLock).string()));
   return fd;
 }
@@ -172,7 +171,7 @@ void DirectoryLock::own(const Folder& folder,
                         int error) {
   const Owner self = this_process(options);
   warning_ = fmt::format(
-      "{} is on {}, which has no locks ({}): the file {} stands for one",
+      "{} is on {}, which has no locks ({}): using the file {} as the lock",
       folder.path().string(),
       file_system(fd_.get()),
       std::strerror(error),
@@ -182,17 +181,18 @@ void DirectoryLock::own(const Folder& folder,
     const Owner owner = owner_in(text);
     const bool gone = is_gone(owner, self);
     if (!gone && !options.break_lock)
-      throw StoreError(fmt::format(
-          "cannot write to {}: {} is running a campaign there, as {} says "
-          "(wait "
-          "for it, give --break-lock if it has ended, or choose another --out)",
-          folder.path().string(),
-          owner.name(),
-          kOwner));
+      throw StoreError(
+          fmt::format("cannot write to {}: {} is running a campaign there, "
+                      "according to {} (wait for it, give --break-lock if it "
+                      "has ended, or choose another --out)",
+                      folder.path().string(),
+                      owner.name(),
+                      kOwner));
     if (folder.remove_if(kOwner, text))
-      warning_ += fmt::format("; that of {} is {}",
-                              owner.name(),
-                              gone ? "taken over, as it has ended" : "broken");
+      warning_ += fmt::format(
+          "; the lock of {} is {}",
+          owner.name(),
+          gone ? "replaced, because the process has ended" : "broken");
   }
   directory_ = folder.path();
   owner_ = self.text();

@@ -22,11 +22,12 @@ std::vector<Catalog> read_shards(const std::vector<fs::path>& paths) {
     shards.push_back(Catalog::read(path));
     if (!shards.back().plan.is_object())
       throw UnreadableInput(fmt::format(
-          "{}: its plan.json is missing, so its campaign is not known (run "
-          "the campaign there again: finished stages are kept)",
+          "{}: its plan.json is missing, so its campaign is unknown (run the "
+          "campaign there again: finished stages are reused)",
           path.string()));
   }
-  if (shards.empty()) throw UnreadableInput("nothing to merge: name stores");
+  if (shards.empty())
+    throw UnreadableInput("nothing to merge: give the directories of shards");
   return shards;
 }
 
@@ -76,7 +77,7 @@ void check_same_campaign(const Catalog& a, const Catalog& b) {
     if (!name.empty())
       refuse(a,
              b,
-             fmt::format("they ran {} with other {}",
+             fmt::format("they ran {} with different {}",
                          name,
                          std::string_view(what) == "keys" ? "data or numerics"
                                                           : "options"),
@@ -96,19 +97,19 @@ void check_out(const std::vector<fs::path>& shards, const fs::path& out) {
   std::error_code error;
   for (const auto& shard : shards)
     if (fs::equivalent(shard, out, error))
-      throw UnreadableInput(fmt::format(
-          "{} is both OUT and a shard (name a directory of its own for OUT, "
-          "then the shards)",
-          out.string()));
+      throw UnreadableInput(
+          fmt::format("{} is both OUT and a shard (first give a separate "
+                      "directory for OUT, then the shards)",
+                      out.string()));
   if (!Store::exists(out)) return;
   const Catalog there = Catalog::read(out);
   if (there.entries().empty() ||
       (there.plan.is_object() && there.plan.value("merged", false)))
     return;
-  throw UnreadableInput(fmt::format(
-      "{} holds a campaign of its own, so it cannot be OUT (name another "
-      "directory for OUT first, then the shards)",
-      out.string()));
+  throw UnreadableInput(
+      fmt::format("{} contains another campaign, so it cannot be OUT (first "
+                  "give another directory for OUT, then the shards)",
+                  out.string()));
 }
 
 json merged_plan(const std::vector<Catalog>& shards) {
@@ -139,11 +140,11 @@ void merge_case(Store& store,
   MissingWork lacks;
   lacks.add(shard, c);
   for (const auto& stage : lacks.lost)
-    warnings.push_back(fmt::format(
-        "{}: the arrays of {} are gone (run the campaign's command there "
-        "again)",
-        shard.directory().string(),
-        stage));
+    warnings.push_back(
+        fmt::format("{}: the arrays of {} are missing (run the campaign's "
+                    "command there again)",
+                    shard.directory().string(),
+                    stage));
   for (const StageRecord& stage : c.stages) {
     const auto slot = std::pair(name, stage.position);
     const JournalEntry* there = store.catalog().at(name, stage.position);
@@ -152,8 +153,8 @@ void merge_case(Store& store,
       const auto first = store.catalog().load(*there);
       if (first && !same(*first, stage))
         throw UnreadableInput(fmt::format(
-            "{} and {} differ in stage {} of {} (one of them is not of this "
-            "campaign; leave it out)",
+            "{} and {} differ in stage {} of {} (one of them belongs to "
+            "another campaign; leave it out)",
             origins.contains(slot) ? origins[slot].string()
                                    : store.catalog().directory().string(),
             shard.directory().string(),

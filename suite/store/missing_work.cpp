@@ -58,7 +58,7 @@ MissingWork missing_work(const Catalog& catalog,
 std::string to_text(const MissingWork& lacks) {
   std::string text =
       lacks.unknown_plan
-          ? "plan.json is missing, so what was asked for is not known"
+          ? "plan.json is missing, so the selected cases are unknown"
           : "";
   const auto add = [&](const auto& names, std::string_view what) {
     if (names.empty()) return;

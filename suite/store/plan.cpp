@@ -18,7 +18,7 @@ using nlohmann::json;
 
 constexpr int kPlanVersion = 2;
 constexpr std::string_view kRenew =
-    "run the campaign's command there again: finished stages are kept";
+    "run the campaign's command there again: finished stages are reused";
 
 bool is_text(const json& j) { return j.is_string(); }
 bool is_name(const json& j) {
@@ -162,7 +162,7 @@ json read_plan(const fs::path& path, std::string* warning) {
   const Folder store(path.has_parent_path() ? path.parent_path() : ".");
   if (!store.has(path.filename())) {
     *warning =
-        fmt::format("{} is missing, so what was asked for is not known ({})",
+        fmt::format("{} is missing, so the selected cases are unknown ({})",
                     path.string(),
                     kRenew);
     return nullptr;
@@ -187,11 +187,11 @@ json parse_plan(std::string_view bytes,
                     path.string(),
                     kPlanVersion));
   if (!intact(plan))
-    throw StoreError(fmt::format(
-        "{} is damaged: it fails its checksum, or holds what no plan does "
-        "(delete it and {})",
-        path.string(),
-        kRenew));
+    throw StoreError(
+        fmt::format("{} is damaged: its checksum or its content is wrong "
+                    "(delete it and {})",
+                    path.string(),
+                    kRenew));
   if (version == 1)
     *warning = fmt::format(
         "{} was written by an older version, without a checksum ({})",

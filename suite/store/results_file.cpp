@@ -18,18 +18,18 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kResultsFile = "results.json";
 
 [[noreturn]] void contradict(const Catalog& catalog, const std::string& what) {
-  throw StoreError(fmt::format(
-      "{} says otherwise of {} than plan, journal, case file and repetitions: "
-      "one of them was altered (restore it; delete results.json, and 'run' as "
-      "before, if it is results.json)",
-      (catalog.directory() / kResultsFile).string(),
-      what));
+  throw StoreError(
+      fmt::format("{} contradicts the plan, the journal, the case file or the "
+                  "repetitions about {}: one of them was edited (restore it; "
+                  "if it is results.json, delete it and repeat the same 'run')",
+                  (catalog.directory() / kResultsFile).string(),
+                  what));
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& path,
                          const std::string& why) {
   throw StoreError(
-      fmt::format("{} is damaged: {} ('run' as before writes it again)",
+      fmt::format("{} is damaged: {} (repeat the same 'run' to write it again)",
                   path.string(),
                   why));
 }
@@ -260,8 +260,8 @@ Json parse_results(std::string_view bytes, const std::filesystem::path& path) {
   } catch (const std::exception&) {  // as damaged as one of wrong types
   }
   if (!are_results(results) || !are_entries(results))
-    refuse(path, "it holds what no results are");
-  if (!unseal(results)) refuse(path, "it fails its checksum");
+    refuse(path, "it does not contain results");
+  if (!unseal(results)) refuse(path, "it has a wrong checksum");
   return results;
 }
 

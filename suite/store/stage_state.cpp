@@ -26,8 +26,8 @@ constexpr const char* kFolder = "checkpoints";
 
 const std::string& checked(const std::string& key) {
   if (!is_key(key))
-    throw StoreError(fmt::format(
-        "'{}' is no content key, which has 32 hexadecimal digits", key));
+    throw StoreError(
+        fmt::format("'{}' is not a content key of 32 hexadecimal digits", key));
   return key;
 }
 

@@ -31,7 +31,7 @@ std::string wrong_counts(const StageRecord& r) {
     const bool some = at.name == "x" && length < expected;
     if (wrong.empty() && length != expected && !some)
       wrong = fmt::format(
-          "{} has {} entries where {} are expected", at.name, length, expected);
+          "{} has {} entries; expected {}", at.name, length, expected);
   });
   return wrong;
 }
@@ -64,7 +64,7 @@ std::string wrong_numbers(const StageRecord& r) {
   for (const auto& [name, good] : arrays)
     if (!good)
       return fmt::format(
-          "{} holds what is no number of a stage that ended as '{}'",
+          "{} contains an invalid number for a stage that ended as '{}'",
           name,
           to_string(r.stop));
   return "";
@@ -96,7 +96,7 @@ std::string wrong_names(const StageRecord& r) {
   for (const auto& [name, array] : r.arrays)
     if (!is_array_name(name))
       return fmt::format(
-          "arrays has a name that no file can have, {}",
+          "arrays has the invalid name {}",
           nlohmann::json(name.substr(0, 80))
               .dump(-1, ' ', true, nlohmann::json::error_handler_t::replace));
   return "";
@@ -105,7 +105,7 @@ std::string wrong_names(const StageRecord& r) {
 std::string wrong_status(const StageRecord& r) {
   for (const Status s : r.status)
     if (s > kStatuses.back())
-      return fmt::format("status holds {}, which is no status",
+      return fmt::format("status contains {}, which is not a status",
                          static_cast<int>(s));
   return "";
 }
@@ -133,7 +133,7 @@ std::string flaw_of_new(const StageRecord& r, std::size_t stages) {
   if (auto wrong = flaw_of(r); !wrong.empty()) return wrong;
   return array_bytes(r) <= room
              ? ""
-             : fmt::format("arrays have {} bytes where {} can be stored",
+             : fmt::format("arrays have {} bytes; the limit is {}",
                            array_bytes(r),
                            room);
 }

@@ -201,7 +201,7 @@ void Store::add(const CaseInfo& info,
                 const CaseData& data,
                 StageRecord record) {
   SUITE_CHECK(record.case_name == info.name && is_key(record.key),
-              "a stage of another case, or without a content key");
+              "a stage belongs to another case or has no content key");
   if (has(info, record)) return;
   if (waiting_.empty()) waiting_since_ = now().wall;
   waiting_bytes_ += bytes_of(record);

@@ -96,7 +96,7 @@ def handed_over(d):
         out = next((t for t in tries if killed(first, t, d)), None)
         assert out, "no stage was killed in its middle"
         said = run(second, *RUN, "--checkpoint=0.001", "--out=" + out, cwd=d)
-        assert "going on with" in said and "cannot go on" not in said, said
+        assert "resuming " in said and "cannot resume" not in said, said
         run(first, "verify", out, cwd=d)
         assert tables(d, out) == tables(d, "a"), "bits of what two ended"
 

@@ -69,7 +69,7 @@ class Campaign:
                             "the journal lost a line")
         # A failed stage may have been handed to another worker first.
         if states and ended.code == 0:
-            self.attempt.expect("going on with" in ended.out,
+            self.attempt.expect("resuming " in ended.out,
                                 "a state that was laid down was not taken up")
         return ended
 
@@ -81,7 +81,7 @@ class Campaign:
                                        f"{ended.code} {ended.err[:200]}"):
             return
         if states:
-            expect("going on with" in ended.out, "nothing goes on from a state")
+            expect("resuming " in ended.out, "nothing goes on from a state")
         expect(not self.states(), "a state is left")
         for folder, folders, files in os.walk(self.store):
             for name in folders + files:

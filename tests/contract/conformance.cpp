@@ -84,7 +84,7 @@ void keep(std::size_t first, const std::vector<std::string>& filters) {
         ExitCode::nothing_matched,
         names.empty()
             ? "nothing is registered whose contracts could be checked"
-            : fmt::format("no experiment matches; nearest are {}",
+            : fmt::format("no experiment matches; nearest: {}",
                           fmt::join(nearest_names(names, filters.front()),  //
                                     ", ")));
   if (asked.experiments().size() == all.size()) return;

@@ -87,7 +87,8 @@ TEST(Verdict, TheSizeOfAChangeIsNamed) {
   now = before, now.results = "0";
   now.losses.worst *= 1 + 1e-9;  // beyond the four digits of the line
   EXPECT_EQ(said(now), "");
-  EXPECT_NE(finding_of(judge(before, now, kBits)).detail.find("to the digits"),
+  EXPECT_NE(finding_of(judge(before, now, kBits))
+                .detail.find("to the recorded digits"),
             std::string::npos);
 }
 
@@ -175,11 +176,13 @@ TEST(GateReport, AClockThatDecidesNothingIsLoud) {
   GateReport report;
   EXPECT_EQ(undecided_text(report), "");
   report.findings = {{.kind = "clock", .name = "c", .verdict = "inconclusive"}};
-  EXPECT_EQ(undecided_text(report).find("the clock decided 0 of 1 cases"), 0u);
-  EXPECT_NE(terminal_text(report).find("warning: the clock"),
+  EXPECT_EQ(
+      undecided_text(report).find("the timing comparison decided 0 of 1 cases"),
+      0u);
+  EXPECT_NE(terminal_text(report).find("warning: the timing comparison"),
             std::string::npos);
   EXPECT_EQ(annotations(report).find("::warning title="), 0u);
-  EXPECT_NE(markdown_text(report).find("passed, the clock decided nothing"),
+  EXPECT_NE(markdown_text(report).find("passed, timing undecided"),
             std::string::npos);
   report.findings.push_back({.kind = "clock", .name = "d", .verdict = "equal"});
   EXPECT_EQ(undecided_text(report), "");

@@ -96,7 +96,7 @@ class Pendulum(unittest.TestCase):
         lists = PROJECT + "/CMakeLists.txt"
         with open(lists) as f:
             before = f.read()
-        for name, why in (("drift.cpp", "no stage's numbers come from it"),
+        for name, why in (("drift.cpp", "no stage depends on it"),
                           ("optimizers/bfgs.cpp", "the suite has a source")):
             os.makedirs(os.path.dirname(f"{PROJECT}/{name}"), exist_ok=True)
             edit(name, "")
@@ -203,7 +203,7 @@ except ValueError as e: print(e)
             self.assertEqual(out.count("\n"), 1)
             self.assertIn(why, out)
         refused(WORK + "/none.so", "there is no plug-in")
-        refused(PREFIX + "/lib/libphysinv_core.a", "is no plug-in")
+        refused(PREFIX + "/lib/libphysinv_core.a", "is not a plug-in")
         refused("", "--plugin= is empty")
         with open(plugin, "rb") as f:
             code = f.read()
@@ -233,7 +233,7 @@ except ValueError as e: print(e)
             self.assertRegex(theirs, "ok +" + name)
         self.assertEqual(pendulum("conformance"), run(
             TREE + "/pendulum_contract_test"))
-        self.assertIn("nearest are pendulum", self.conformance("no", status=3))
+        self.assertIn("nearest: pendulum", self.conformance("no", status=3))
 
     def test_8_a_build_that_stopped_has_no_contract_tests(self):
         stopped = WORK + "/stopped"

@@ -148,7 +148,7 @@ class Campaign(unittest.TestCase):
             self.results.curve("jpo/billiards/bfgs")
         with self.assertRaisesRegex(ValueError, "no finished stage 'fit'"):
             self.results.examples(BFGS, "fit")
-        with self.assertRaisesRegex(physinv.ProgramError, "nearest are") as e:
+        with self.assertRaisesRegex(physinv.ProgramError, "nearest: ") as e:
             physinv.run("smoke", filter="biliards", out=WORK + "/none")
         self.assertEqual(e.exception.status, 3)
         with self.assertRaisesRegex(RuntimeError, "none"):

@@ -124,7 +124,7 @@ def undisturbed(d, alone):
     wait_merged(d)
     complete(d, alone, "undisturbed")
     p = bench("submit", "--slurm", d, *SELECTION)
-    check("nothing is missing" in p.stdout, "complete: nothing to submit")
+    check("all missing tasks are in the queue" in p.stdout, "complete: nothing to submit")
     p = bench("submit", "--slurm", d, "--profile=smoke")
     check(p.returncode == 2 and len(p.stderr.splitlines()) == 1,
           "another selection is refused: " + p.stderr.strip())

@@ -101,7 +101,7 @@ def crash(d, whole):
     out = os.path.join(d, "crash")
     killed_inside(out)
     text = finish(start(out, pace="0", plant="a crash when going on"))
-    check("cannot go on from its state" in text and "it starts again" in text,
+    check("cannot resume from its checkpoint" in text and "it starts again" in text,
           "says so")
     check(results(out) == results(whole), "same results as uninterrupted")
 
@@ -114,7 +114,7 @@ with tempfile.TemporaryDirectory() as d:
     out = os.path.join(d, "killed")
     killed_inside(out)
     text = finish(start(out, pace="0"))
-    check("going on with fake/cubic/descend" in text, "goes on, and says so")
+    check("resuming fake/cubic/descend" in text, "goes on, and says so")
     check("from iteration" in text and "from iteration 0" not in text,
           "from the middle")
     check(results(out) == results(whole), "same results as uninterrupted")
@@ -127,7 +127,7 @@ with tempfile.TemporaryDirectory() as d:
         f.write(b"\x55")
     text = finish(start(out, pace="0"))
     check("is damaged (its stage starts again)" in text, "damage is said")
-    check("going on with" not in text, "nothing goes on from it")
+    check("resuming " not in text, "nothing goes on from it")
     check(results(out) == results(whole), "same results as uninterrupted")
 
     forged(d, whole)
@@ -139,7 +139,7 @@ with tempfile.TemporaryDirectory() as d:
     with open(state, "rb") as f, open(other, "wb") as g:
         g.write(f.read())
     text = finish(start(out, "--fresh", pace="0"))
-    check("going on with" not in text, "--fresh starts again")
+    check("resuming " not in text, "--fresh starts again")
     check(states(out) == [other], "and leaves the states of others")
     check(results(out) == results(whole), "same results as uninterrupted")
 

@@ -35,8 +35,8 @@ def bad_input(d):
     expect(2, ["report", "results", "stray"], d, "stray")
     expect(2, ["--filter=(x"], d, "regular expression")
     expect(3, ["--filter=cubik"], d, "fake/cubic")
-    expect(2, ["--profile=huge"], d, "known are smoke")
-    expect(2, ["--set", "speed=3"], d, "known are n, seeds")
+    expect(2, ["--profile=huge"], d, "known profiles: smoke")
+    expect(2, ["--set", "speed=3"], d, "known keys: n, seeds")
     expect(2, ["--set", "n"], d, "key=value")
     expect(2, ["--set", "n=-3"], d)
     expect(2, ["--set", "n=four"], d)
@@ -59,7 +59,7 @@ def bad_input(d):
     expect(9, ["--profile=smoke", "--out=file/below"], d)
     expect(9, ["kernels"], d, "physinv-kernels")
     expect(9, ["conformance"], d, "build the target physinv-conformance")
-    expect(2, ["conformance", "--gtest_fiter=x"], d, "it takes break_on")
+    expect(2, ["conformance", "--gtest_fiter=x"], d, "of GoogleTest: break_on")
 
 
 def good_input(d):
@@ -67,10 +67,10 @@ def good_input(d):
     expect(0, ["--version"], d, "compiler")
     expect(0, ["run", "--help"], d, "--time-budget")
     expect(0, ["list", "--profile=smoke"], d, "fake/cubic/walk/n=4/seed=0")
-    expect(0, ["list", "--validate"], d, "registered as they should be")
+    expect(0, ["list", "--validate"], d, "methods are valid")
     for edited, stale in (("suite/core/method.h", 6), ("problems/new.cpp", 0)):
         expect(0, ["list", "--profile=smoke", "--edit=" + edited], d,
-               f"an edit of {edited} makes {stale} of 6 stages stale")
+               f"an edit of {edited} invalidates {stale} of 6 stages")
     p = expect(0, ["list", "--json", "--profile=smoke"], d)
     check(len(json.loads(p.stdout)) == 4, "list --json lists four cases")
     expect(0, ["--dry-run", "--profile=smoke"], d, "6 stages to run")
@@ -188,7 +188,7 @@ def incomplete(d):
     for i in (1, 2):
         expect(0, [*quick, f"--shard={i}/2", f"--out=h{i}"], d)
     expect(0, [*quick, "--shard=2/2", "--set", "iterations=5", "--out=h5"], d)
-    expect(2, ["merge", "h", "h1", "h5"], d, "with other options")
+    expect(2, ["merge", "h", "h1", "h5"], d, "with different options")
     check(not os.path.exists(os.path.join(d, "h")), "nothing was merged")
     expect(2, ["merge", "h1", "h2"], d, "cannot be OUT")
     expect(2, ["merge", "h1", "h1", "h2"], d, "both OUT and a shard")

@@ -43,17 +43,17 @@ def refused_merge(d):
     s.put(sbatch=LOG + "[[ $* != *merge.sh ]] || { echo no >&2; exit 1; }\n"
           "echo warning; echo '77;local'", squeue="exit 0")
     submit = ["submit", "--slurm=m", *SELECTION]
-    expect(9, submit, d, "job 77 is submitted, the merge after it is not",
+    expect(9, submit, d, "job 77 is submitted, but its merge is not",
            env=s.env)
     with open(os.path.join(d, "m", "submission.json")) as f:
         check(json.load(f)["jobs"] == ["77"], "the array's id is kept")
     queued = "for k in 0 1 2; do echo 77 $k PENDING; done; echo 5 N/A RUNNING"
     s.put(squeue=queued)
-    expect(9, submit, d, "the same command submits it", env=s.env)
+    expect(9, submit, d, "repeat the command to submit it", env=s.env)
     expect(10, ["status", "m"], d, "tasks are in the queue", env=s.env)
     s.put(sbatch=LOG + "echo 78")
-    expect(0, submit, d, "the merge that is missing", env=s.env)
-    expect(0, submit, d, "nothing is missing", env=s.env)
+    expect(0, submit, d, "submitting the missing merge", env=s.env)
+    expect(0, submit, d, "all missing tasks are in the queue", env=s.env)
     arrays = [line for line in s.log() if "--array=" in line]
     merges = [line for line in s.log() if "merge.sh" in line]
     check(len(arrays) == 1, f"one array: {arrays}")
@@ -109,20 +109,20 @@ def bad_queues(d):
     expect(0, submit, d, "job 9", env=s.env)
     before = s.log()
     for script, says in (
-            ("sleep 60", "no end within 1 s"),
-            ("sleep 60 & exit 0", "no end within 1 s"),
-            ("trap '' TERM; while :; do sleep 1; done", "no end within 1 s"),
-            ("exec >&- 2>&-; sleep 60", "no end within 1 s"),
+            ("sleep 60", "no exit within 1 s"),
+            ("sleep 60 & exit 0", "no exit within 1 s"),
+            ("trap '' TERM; while :; do sleep 1; done", "no exit within 1 s"),
+            ("exec >&- 2>&-; sleep 60", "no exit within 1 s"),
             ("yes", "bytes of output"),
             ("yes >&2", "bytes of output"),
-            ("head -c 100000 /dev/urandom", "no queue"),
-            ("echo '<html>'; echo busy", "no queue"),
+            ("head -c 100000 /dev/urandom", "other than a queue"),
+            ("echo '<html>'; echo busy", "other than a queue"),
             ("echo unable to contact >&2; exit 1", "status 1 unable"),
             ("kill -9 $$", "status 137")):
         s.put(squeue=script)
         begin = time.time()
         expect(10, ["status", "q"], d, says, env=s.env)
-        expect(9, submit, d, "would be submitted twice", env=s.env)
+        expect(9, submit, d, "could run tasks twice", env=s.env)
         check(time.time() - begin < 8, f"squeue that does {script}")
     for lines, queued in (("9 99999999999999999999999 RUNNING", 0),
                           ("9 -1 RUNNING", 0), ("9 3 RUNNING", 0),
@@ -143,14 +143,14 @@ def bad_sbatch(d):
     s = Slurm(d)
     s.put(squeue="exit 0")
     for k, (script, says) in enumerate((
-            ("sleep 60", "no end within 1 s"), ("yes", "bytes of output"),
-            ("exec >&- 2>&-; sleep 60", "no end within 1 s"),
-            ("head -c 1000 /dev/urandom", "no id"), ("exit 0", "no id"),
-            ("printf 'a\\0b\\303'", "no id"),
-            ("echo hello", "no id"), ("echo -1", "no id"),
-            ("echo --wrap=x", "no id"), ("printf '%0400d' 1", "no id"),
-            ("echo down >&2; exit 3", "refuses: down"),
-            ("exit 1", "no answer"))):
+            ("sleep 60", "no exit within 1 s"), ("yes", "bytes of output"),
+            ("exec >&- 2>&-; sleep 60", "no exit within 1 s"),
+            ("head -c 1000 /dev/urandom", "of a job id"), ("exit 0", "of a job id"),
+            ("printf 'a\\0b\\303'", "of a job id"),
+            ("echo hello", "of a job id"), ("echo -1", "of a job id"),
+            ("echo --wrap=x", "of a job id"), ("printf '%0400d' 1", "of a job id"),
+            ("echo down >&2; exit 3", "failed: down"),
+            ("exit 1", "no message"))):
         s.put(sbatch=script)
         begin = time.time()
         expect(9, ["submit", f"--slurm=b{k}", *SELECTION], d, says, env=s.env)

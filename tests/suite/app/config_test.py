@@ -34,25 +34,25 @@ GOOD = {  # file -> what it chooses
 BAD = {  # file -> what is said
     SMOKE + 'filter = "wal#k"': (3, "matches 'wal#k'"),
     "\n\nprofil = 'smoke'": (2, "{}:3: unknown key 'profil'; did you mean prof"),
-    SMOKE + "[run]\njobs = 1": (2, "{}:2: run is neither text, number"),
-    SMOKE + "a.b = 1": (2, "{}:2: a is neither text, number"),
-    SMOKE + "out = 1979-05-27": (2, "{}:2: out is neither text, number"),
-    "filter = [['walk']]": (2, "{}:1: filter is neither text, number"),
+    SMOKE + "[run]\njobs = 1": (2, "{}:2: run must be text, a number"),
+    SMOKE + "a.b = 1": (2, "{}:2: a must be text, a number"),
+    SMOKE + "out = 1979-05-27": (2, "{}:2: out must be text, a number"),
+    "filter = [['walk']]": (2, "{}:1: filter must be text, a number"),
     "filter = []": (2, "{}:1: filter is an empty list"),
     "filter = ['walk', '']": (2, "{}:1: --filter= is empty"),
-    'out = "a\\u0000b"': (2, "{}:1: --out= holds a character of value 0"),
+    'out = "a\\u0000b"': (2, "{}:1: --out= contains a null character"),
     "\nprofile = ['smoke', 'quick']": (2, "{}:2: profile: takes one value"),
-    "\njobs = 1.5": (2, "{}:2: jobs: 1.5 is no whole number"),
-    "\ntrace = 7": (2, "{}:2: --trace=7 is neither yes nor no"),
+    "\njobs = 1.5": (2, "{}:2: jobs: 1.5 is not a whole number"),
+    "\ntrace = 7": (2, "{}:2: --trace=7 is not a boolean"),
     "help = true": (2, "{}:1: unknown key 'help'"),
     "config = 'x'": (2, "{}:1: unknown key 'config'"),
     "FILTER = 'walk'": (2, "{}:1: unknown key 'FILTER'"),
-    SMOKE + SMOKE: (2, "{}:2: the file of --config is no TOML"),
-    SMOKE + "out = \"a": (2, "{}:2: the file of --config is no TOML"),
-    '{"profile": "smoke",\n"profile": "quick"}': (2, "{}:2: 'profile' stands tw"),
-    '{"profile":\n"smoke",,}': (2, "{}:2: the file of --config is no JSON"),
-    '{"jobs": 1e400}': (2, "{}:1: the file of --config is no JSON"),
-    '{"jobs": null}': (2, "{}:1: jobs is neither text, number"),
+    SMOKE + SMOKE: (2, "{}:2: the file of --config is not valid TOML"),
+    SMOKE + "out = \"a": (2, "{}:2: the file of --config is not valid TOML"),
+    '{"profile": "smoke",\n"profile": "quick"}': (2, "{}:2: 'profile' appears tw"),
+    '{"profile":\n"smoke",,}': (2, "{}:2: the file of --config is not valid JSON"),
+    '{"jobs": 1e400}': (2, "{}:1: the file of --config is not valid JSON"),
+    '{"jobs": null}': (2, "{}:1: jobs must be text, a number"),
     '{\n"filte": "walk"}': (2, "{}:2: unknown key 'filte'; did you mean filter"),
 }
 
@@ -82,10 +82,10 @@ def what_is_wrong(d):
         write(d, name, text)
         expect(code, ["run", "--benchmark_list_tests", "--config=" + name], d,
                says.replace("{}", name))
-    for name, text, says in (("c.json", SMOKE, "no JSON"), ("c.json", "", "no J"),
-                             ("c.json", "[1]", "is no JSON object"),
-                             ("c.toml", '{"profile": "smoke"}', "no TOML"),
-                             ("c.toml", b'out = "\xff"', "no TOML")):
+    for name, text, says in (("c.json", SMOKE, "valid JSON"), ("c.json", "", "valid J"),
+                             ("c.json", "[1]", "is not a JSON object"),
+                             ("c.toml", '{"profile": "smoke"}', "valid TOML"),
+                             ("c.toml", b'out = "\xff"', "valid TOML")):
         write(d, name, text)
         expect(2, ["--config=" + name], d, says)
 

@@ -42,7 +42,7 @@ def closed_streams(d):
             check(p.returncode == (9 if 1 in which else 0),
                   f"runs without {which}: {p.returncode}")
             check(1 not in which or 2 in which or
-                  "standard output cannot be written" in p.stderr, "it is said")
+                  "cannot write standard output" in p.stderr, "it is said")
             lock = open(os.path.join(out, "lock")).read()
             check(lock.isdigit(), f"lock holds a process: {lock[:40]!r}")
             p = run("verify", out)

@@ -107,7 +107,7 @@ def filters_without_a_flag(d):
     p = run("plan", "--profile=smoke", "walk", cwd=d,
             env={"XDG_CACHE_HOME": os.path.join(d, "cache")})
     check(p.returncode == 0 and "1 cases: " in p.stdout, "plan walk")
-    expect(3, ["run", "walk", "stray"], d, "matches 'stray'; nearest are ")
+    expect(3, ["run", "walk", "stray"], d, "matches 'stray'; nearest: ")
     expect(2, ["walkk"], d, "run walkk")
 
 
@@ -145,21 +145,21 @@ def a_campaign_file(d):
           "its text is recorded")
     for text, says in (('{"profil": "smoke"}', "profil"),
                        ('{"profile": ""}', "--profile= is empty"),
-                       ('{"profile": {"a": 1}}', "neither text"),
+                       ('{"profile": {"a": 1}}', "must be text"),
                        ('{"jobs": 0}', "whole number"),
-                       ('{"dry-run": 7}', "neither yes nor no"),
-                       ('{"profile"', "no JSON"), ("profile", "no TOML")):
+                       ('{"dry-run": 7}', "not a boolean"),
+                       ('{"profile"', "valid JSON"), ("profile", "valid TOML")):
         write("wrong", text)
         expect(2, ["--config=wrong"], d, says)
-    expect(2, ["--config=nowhere"], d, "no file of at most")
-    expect(2, ["--config=/dev/zero"], d, "no file of at most")
+    expect(2, ["--config=nowhere"], d, "not a file of at most")
+    expect(2, ["--config=/dev/zero"], d, "not a file of at most")
 
 
 def a_budget_is_kept(d):
     """A stage that would go on for a minute ends with the budget."""
     begin = time.time()
     p = expect(10, ["--profile=slow", "--filter=sleep", "--out=slept",
-                    "--time-budget=4"], d, "2 of 2 cases not run, out of time")
+                    "--time-budget=4"], d, "2 of 2 cases not run within")
     seconds = time.time() - begin
     # What is not for cases comes off it: the start, pages, and a wait for whoever
     # cannot lay its state down.
@@ -169,8 +169,8 @@ def a_budget_is_kept(d):
            "[6/6]")
     p = expect(0, ["--profile=smoke", "--out=soon", "--time-budget=0.000001"],
                d)
-    check("left out for want of time: the numbers and the page (./bench report "
-          "soon)" in p.stdout, "no time for a page")
+    check("not written within the time budget: the numbers and the page; run "
+          "./bench report soon" in p.stdout, "no time for a page")
 
 
 def a_plan_soon(d):
@@ -192,10 +192,10 @@ def a_plan_soon(d):
 
 def nearest(d):
     p = expect(2, ["--set=methods=walc"], d, "unknown method 'walc'")
-    words = p.stderr.strip().split("nearest are ")[1].split(", ")
+    words = p.stderr.strip().split("nearest: ")[1].split(", ")
     check(words[0] == "walk" and len(words) == 5, f"the nearest five: {words}")
-    p = expect(3, ["--filter=fake/kubic"], d, "nearest are fake/cubic")
-    check(len(p.stderr.split("nearest are ")[1].split(", ")) <= 5, "five names")
+    p = expect(3, ["--filter=fake/kubic"], d, "nearest: fake/cubic")
+    check(len(p.stderr.split("nearest: ")[1].split(", ")) <= 5, "five names")
 
 
 def help_and_version(d):
@@ -204,7 +204,7 @@ def help_and_version(d):
     check(expect(0, ["help", "plan"], d).stdout ==
           expect(0, ["plan", "--help"], d).stdout, "help plan")
     expect(2, ["help", "plam"], d, "did you mean plan")
-    expect(2, ["help", "plan", "list"], d, "of one verb")
+    expect(2, ["help", "plan", "list"], d, "takes one verb")
     check(expect(0, ["-V"], d).stdout == expect(0, ["--version"], d).stdout,
           "-V")
 
@@ -232,8 +232,8 @@ def claims(d):
     check(p.stdout == expect(0, ["list", "--claims", "--json"], d).stdout,
           "--json is the same")
     expect(0, ["list", "--claims", "--format=markdown"], d, "| of | id |")
-    expect(2, ["list", "--claims", "--format=xml"], d, "known are markdown")
-    expect(2, ["list", "--format=markdown"], d, "known are text")
+    expect(2, ["list", "--claims", "--format=xml"], d, "known values: markdown")
+    expect(2, ["list", "--format=markdown"], d, "known values: text")
 
 
 with tempfile.TemporaryDirectory() as directory:

@@ -124,13 +124,13 @@ printf '%s\\n' "$@"
 def switches_and_numbers(d):
     """What CLI11 reads as something else is refused."""
     for value in ("-1", "7", "maybe", "2"):
-        expect(2, ["--dry-run=" + value], d, "neither yes nor no")
-    expect(2, ["--resume=-3"], d, "neither yes nor no")
+        expect(2, ["--dry-run=" + value], d, "not a boolean")
+    expect(2, ["--resume=-3"], d, "not a boolean")
     expect(0, ["--profile=smoke", "--dry-run=true"], d, "6 stages to run")
     for number in ("010", "0x2", "1.5", "1e3", "-1", "0", "1025", "inf", "nan",
                    "99999999999999999999", "١", " 1"):
         expect(2, ["--jobs=" + number, "--dry-run"], d,
-               "is no whole number from 1 to 1024")
+               "is not a whole number from 1 to 1024")
         expect(2, ["--benchmark_repetitions=" + number, "--dry-run"], d)
     expect(2, ["--benchmark_repetitions=2", "--share-cores", "--dry-run"], d,
            "use one of the two")
@@ -245,7 +245,7 @@ def damaged_speeds(d):
         env = {"TMPDIR": os.path.join(d, "tmp"), **home}
         p = subprocess.run([BENCH, *plan], cwd=os.path.join(d, "here"), env=env,
                            text=True, capture_output=True, timeout=60)
-        check(p.returncode == 0 and "are measured and not kept" in p.stderr and
+        check(p.returncode == 0 and "measured speeds are not saved" in p.stderr and
               not names_in(d + "/tmp") and not names_in(d + "/here"),
               f"no place of one's own: {home} {p.stderr}")
 
@@ -264,7 +264,7 @@ def lost_times(d):
         with open(path, "w") as f:
             f.writelines(f"{crc32c(t.encode()).decode()} {t}\n" for t in texts)
         for args in (["verify", "t"], ["export", "t"], ["compare", "t", "t"]):
-            expect(9, args, d, "a time is no number of seconds")
+            expect(9, args, d, "a time is not a number of seconds")
 
 
 def names_of_any_bytes(d):

@@ -24,9 +24,9 @@ def reproduce(code, *arguments, cwd, campaigns=CAMPAIGNS):
 
 with tempfile.TemporaryDirectory() as d:
     planned = reproduce(0, *sorted(os.listdir(CAMPAIGNS)), "--dry-run", cwd=d)
-    assert "not registered" not in planned, planned
+    assert "no longer registered" not in planned, planned
     assert f"{len(os.listdir(CAMPAIGNS))} campaigns" in planned, planned
-    assert "one of both" in reproduce(2, cwd=d)
+    assert "give either" in reproduce(2, cwd=d)
     assert "no campaign 'none'" in reproduce(3, "none", cwd=d)
     assert not os.listdir(d), os.listdir(d)
 
@@ -38,7 +38,7 @@ with tempfile.TemporaryDirectory() as d:
                          campaigns=few)
     assert OF_TWO_PAPERS in of_paper and CHEAP not in of_paper, of_paper
     assert "jpo/" not in of_paper, of_paper
-    assert "papers are jpo, physgrad" in reproduce(
+    assert "known papers: jpo, physgrad" in reproduce(
         3, "--paper=none", cwd=d, campaigns=few)
 
     made = reproduce(0, CHEAP, "--out=again", "--jobs=1", cwd=d)

@@ -81,19 +81,19 @@ def laid_down(d, whole):
         (os.killpg if group else os.kill)(p.pid, number)
         text, errors = p.communicate(timeout=20)
         check(p.returncode == 130, f"{number.name} ends it: {p.returncode}")
-        check("laid down fake/cubic/descend/" in text, "it lays down: " + text)
-        check("the same command goes on with them" in errors and
+        check("saved fake/cubic/descend/" in text, "it lays down: " + text)
+        check("the same command resumes" in errors and
               errors.count("\n") == 1, "and says how to go on: " + errors)
         check(len(states(out)) == 1, "one state")
         p = start(out, *DESCEND, pace="0")
         text, _ = p.communicate(timeout=60)
-        check("going on with fake/cubic" in text and
+        check("resuming fake/cubic" in text and
               "from iteration 0" not in text, "goes on from there")
         check(results(out) == results(whole), "same results as uninterrupted")
     p = start(out, *DESCEND, "--fresh")
     time.sleep(1)
     p.send_signal(signal.SIGINT)
-    check("without --fresh goes on" in p.communicate(timeout=20)[1],
+    check("without --fresh resumes" in p.communicate(timeout=20)[1],
           "with --fresh the same command would start again")
 
 
@@ -123,7 +123,7 @@ def killed_workers(d, whole):
         check(p.returncode == code, f"{kills} kills -> {p.returncode} {errors}")
         check(text.count("SIGKILL (out of memory?); trying again")
               == min(kills, 2), "it says so")
-        check("going on with fake/cubic/descend" in text, "from its state")
+        check("resuming fake/cubic/descend" in text, "from its state")
         if code == 0:
             check(results(out) == results(whole), "same results")
 

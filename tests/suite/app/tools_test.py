@@ -68,12 +68,12 @@ def compare(d):
     expect(0, ["compare", "a", "f64", "--out=page"], d, "page/index.html")
     check(os.path.exists(os.path.join(d, "page", "compare", "tables",
                                       "changes.csv")), "the page's tables")
-    expect(2, ["compare", "a"], d, "one folder is no comparison")
-    expect(2, ["compare", "a", "--by=commit"], d, "of one commit")
+    expect(2, ["compare", "a"], d, "needs two or more folders")
+    expect(2, ["compare", "a", "--by=commit"], d, "from one commit")
     expect(2, ["compare", "a", "nowhere"], d, "no results in 'nowhere'")
-    expect(2, ["compare", "a", "b", "--by=colour"], d, "known are method")
-    expect(2, ["compare", "a", "b", "--format=xml"], d, "known are text")
-    expect(2, ["compare", "a", "b", "--fail-on=colour"], d, "known are loss")
+    expect(2, ["compare", "a", "b", "--by=colour"], d, "known values: method")
+    expect(2, ["compare", "a", "b", "--format=xml"], d, "known values: text")
+    expect(2, ["compare", "a", "b", "--fail-on=colour"], d, "known values: loss")
     expect(2, ["compare", "a", "b", "--factor=-1"], d, "positive")
     expect(0, ["--profile=smoke", "--filter=walk", "--out=w"], d)
     expect(0, ["--profile=smoke", "--filter=descend", "--out=v"], d)
@@ -83,7 +83,7 @@ def compare(d):
 def plan(d):
     env = {"XDG_CACHE_HOME": os.path.join(d, "cache")}
     p = run("plan", "--profile=quick", cwd=d, env=env)
-    check(p.returncode == 0 and "time not known" in p.stdout,
+    check(p.returncode == 0 and "time unknown" in p.stdout,
           "plan: what no campaign took is not known")
     p = run("plan", "--profile=quick", "--exact", cwd=d, env=env)
     check(p.returncode == 0 and "of one core" in p.stdout, "plan --exact")
@@ -103,7 +103,7 @@ def plan(d):
     expect(0, ["plan", "--profile=quick", "--against=a", "--plot=p.svg"], d,
            env=env)
     expect(2, ["plan", "--measured"], d, "--against")
-    expect(2, ["plan", "--profile=huge"], d, "known are smoke")
+    expect(2, ["plan", "--profile=huge"], d, "known profiles: smoke")
     expect(2, ["plan", "--against=nowhere"], d, "no results")
     expect(3, ["plan", "--filter=cubik"], d, "nearest")
     speeds = [f for f in os.listdir(os.path.join(d, "cache", "physinv"))]
@@ -112,7 +112,7 @@ def plan(d):
     p = run("plan", "--profile=quick", "--exact", cwd=d, env=env)
     check(p.returncode == 0 and "measuring" in p.stderr,
           "speeds that cannot be read are measured again")
-    expect(2, ["--time-budget=3x"], d, "90, 90s, 10m and 2h are")
+    expect(2, ["--time-budget=3x"], d, "90, 90s, 10m or 2h")
 
 
 def habits(d):
@@ -156,12 +156,12 @@ def habits(d):
     expect(2, ["--benchmark_format=jsn"], d, "did you mean json")
     expect(2, ["--benchmark_repetitions=0"], d)
     expect(2, ["--cases=nowhere"], d, "no file 'nowhere'")
-    expect(2, [], d, "go together", env={"GTEST_TOTAL_SHARDS": "2"})
-    expect(2, [], d, "0 to 1 are",
+    expect(2, [], d, "set both", env={"GTEST_TOTAL_SHARDS": "2"})
+    expect(2, [], d, "expected 0 to 1",
            env={"GTEST_TOTAL_SHARDS": "2", "GTEST_SHARD_INDEX": "2"})
     expect(2, [], d, "whole number", env={"BENCHMARK_REPETITIONS": "few"})
     expect(2, ["export", "nowhere"], d, "no results")
-    expect(2, ["export", "r", "--format=xml"], d, "known are json")
+    expect(2, ["export", "r", "--format=xml"], d, "known values: json")
 
 
 def completion(d):
@@ -178,13 +178,13 @@ def completion(d):
                        timeout=60)
     check(p.stdout.split() == ["--fail-on", "compare", "completion"],
           f"bash completes flags and verbs: {p.stdout.split()} {p.stderr}")
-    expect(2, ["completion", "csh"], d, "bash, zsh and fish")
+    expect(2, ["completion", "csh"], d, "bash, zsh, fish")
 
 
 def cluster(d):
-    expect(9, ["submit", "--slurm=c"], d, "no Slurm here", env={"PATH": d})
+    expect(9, ["submit", "--slurm=c"], d, "Slurm is not installed", env={"PATH": d})
     expect(2, ["submit"], d, "--slurm=DIR")
-    expect(2, ["submit", "--slurm=c", "--shard=1/2"], d, "--shard is for run")
+    expect(2, ["submit", "--slurm=c", "--shard=1/2"], d, "use --shard only with run")
     expect(2, ["status", "nowhere"], d, "no submitted campaign")
     os.mkdir(os.path.join(d, "torn"))
     with open(os.path.join(d, "torn", "submission.json"), "w") as f:

@@ -27,7 +27,7 @@ TEST(Child, HasLimits) {
   for (const char* script :
        {"exec sleep 60", "sleep 60 & exit 0", "exec >&- 2>&-; exec sleep 60"}) {
     const Ended slow = shell(script, {.seconds = 0.2});
-    EXPECT_EQ(slow.exceeded, "no end within 0.2 s") << script;
+    EXPECT_EQ(slow.exceeded, "no exit within 0.2 s") << script;
   }
   for (const char* script : {"exec yes", "exec yes >&2"}) {
     const Ended endless = shell(script, {.seconds = 30, .bytes = 100'000});

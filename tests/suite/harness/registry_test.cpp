@@ -59,7 +59,7 @@ TEST(Registry, FindsWhatIsWrong) {
   EXPECT_EQ(complaint([](Experiment& e) {
               e.problem.source = "problems/cubic/cubic.h";
             }),
-            "fake/cubic: no source of numbers 'problems/cubic/cubic.h'");
+            "fake/cubic: there is no source 'problems/cubic/cubic.h'");
   Registry twice = fake_registry();
   twice.add(fake::experiment());
   EXPECT_THROW(twice.validate(), std::logic_error);
@@ -104,7 +104,7 @@ std::string complaint_of(const Claim& claim) {
 TEST(Registry, ChecksWhatClaimsAskFor) {
   EXPECT_EQ(complaint_of(claim_on({"walk", "refine"})), "");
   const auto asks = [](const char* what) {
-    return std::string("fake/cubic: claim R1 asks for ") + what;
+    return std::string("fake/cubic: claim R1 needs ") + what;
   };
   EXPECT_EQ(complaint_of(claim_on({"wlak"})),
             asks("the unknown method 'wlak' of fake/cubic"));
@@ -118,8 +118,10 @@ TEST(Registry, ChecksWhatClaimsAskFor) {
   EXPECT_EQ(complaint_of(claim_on(Select{"walk"}.in("fake/quintic"))),
             asks("the unknown experiment 'fake/quintic'"));
   name_elsewhere({});
-  EXPECT_EQ(complaint_of(claim_on(Select{"walk"}.of_sizes(1000))),
-            asks("'walk, n >= 1000', which no profile from smoke on runs"));
+  EXPECT_EQ(
+      complaint_of(claim_on(Select{"walk"}.of_sizes(1000))),
+      asks("'walk, n >= 1000', which neither profile smoke nor a later one "
+           "runs"));
   Claim late = claim_on({"descend"});
   late.from = "yearly";
   EXPECT_EQ(complaint_of(late),

@@ -144,7 +144,7 @@ TEST(Sources, WhatIsWrongIsNamed) {
   EXPECT_EQ(
       good.errors({.roots = {"/home/problems/haet/haet.h"}, .unused = {}}),
       std::vector<std::string>{
-          "no source of numbers '/home/problems/haet/haet.h'"});
+          "there is no source '/home/problems/haet/haet.h'"});
   EXPECT_EQ(
       good.errors({.roots = {"steps/rule.h"},
                    .unused = {{"steps/rule.h", "steps/sdg.h"}}}),
@@ -152,9 +152,10 @@ TEST(Sources, WhatIsWrongIsNamed) {
   Files files = kSuite;
   files.at("cases/heat_metrics.cpp").second += "results/results.h ";
   EXPECT_EQ(graph(files).errors(kTrain),
-            std::vector<std::string>{"numbers come from cases/heat_metrics.cpp,"
-                                     " but changes of results/results.h go "
-                                     "unseen"});
+            std::vector<std::string>{
+                "results depend on cases/heat_metrics.cpp, but changes of "
+                "results/results.h would not invalidate "
+                "them"});
   // The table of arrays moves no number, so that no graph has it.
   files = kSuite;
   files.at("core/method.h").second += "suite/core/array_table.h ";
@@ -236,7 +237,7 @@ TEST(Sources, WhatIsMissingOutsideSaysWhereItBelongs) {
   const auto wrong = Project().graph().errors(
       {.roots = {"problems/rain/rain.h"}, .unused = {}});
   ASSERT_EQ(wrong.size(), 1U);
-  EXPECT_NE(wrong[0].find("is to stand in SOURCES"), std::string::npos);
+  EXPECT_NE(wrong[0].find("list its file in SOURCES"), std::string::npos);
 }
 
 TEST(Sources, TwoProjectsWithOneNameAreToldApart) {
@@ -248,9 +249,10 @@ TEST(Sources, TwoProjectsWithOneNameAreToldApart) {
   const SourceGraph g("gcc", {}, both);
   EXPECT_EQ(g.find("/b/drop.h"), "b/drop.h");
   EXPECT_EQ(g.find("b/drop.h"), "b/drop.h");
-  EXPECT_EQ(g.errors({.roots = {"problems/drop/drop.h"}, .unused = {}}),
-            std::vector<std::string>{"'problems/drop/drop.h' may be a/drop.h "
-                                     "or b/drop.h; name one of them in full"});
+  EXPECT_EQ(
+      g.errors({.roots = {"problems/drop/drop.h"}, .unused = {}}),
+      std::vector<std::string>{"'problems/drop/drop.h' is ambiguous: a/drop.h "
+                               "or b/drop.h; give one of these paths in full"});
 }
 
 }  // namespace

@@ -295,7 +295,7 @@ TEST(CaseFile, OfANewerVersionIsRefused) {
                        "path",
                        "a/case");
             }),
-            fmt::format("path: it is of version {}, this program reads up to "
+            fmt::format("path: its version is {}, this program reads up to "
                         "{} (use the program that wrote it or a newer one)",
                         kCaseVersion + 1,
                         kCaseVersion));

@@ -42,7 +42,7 @@ int fill_small_disk(const fs::path& out) {
       }
     }
     if (kept == 0 || !contains(message, "No space left on device") ||
-        !contains(message, "make space"))
+        !contains(message, "free some space"))
       return 1;
   }
   if (load_results(out).cases().size() != kept) return 2;

@@ -124,8 +124,7 @@ TEST_F(FolderTest, OtherThanFilesAreNamedAndLeftAlone) {
 TEST_F(FolderTest, LargerFilesThanStatedAreNotRead) {
   write_file(out_ / "store" / "large", "");
   fs::resize_file(out_ / "store" / "large", std::uintmax_t{8} << 30);
-  const auto says =
-      "it has 8589934592 bytes, and such a file at most 536870912";
+  const auto says = "it has 8589934592 bytes, the limit is 536870912";
   EXPECT_TRUE(contains(
       message_of<StoreError>([&] { folder_.read("large", kLargestData); }),
       says));

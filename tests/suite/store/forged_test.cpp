@@ -80,7 +80,7 @@ TEST_F(ForgedTest, EveryNumberOfTheDataCounts) {
       EXPECT_TRUE(contains(
           after(array,
                 [&](auto& b) { b.data()[i] = std::nextafter(b.data()[i], 9); }),
-          "data do not have their hash"));
+          "the hash of the data arrays is wrong"));
 }
 
 TEST_F(ForgedTest, EveryNumberOfAStageCounts) {
@@ -92,20 +92,21 @@ TEST_F(ForgedTest, EveryNumberOfAStageCounts) {
                             "arrays/parameters"})
     EXPECT_TRUE(contains(after(fmt::format("stages/0_fit/{}", array),
                                [](auto& b) { b.data()[b.size() - 1] += 1; }),
-                         "does not have the hash"));
+                         "differs from its journal line"));
 }
 
 TEST_F(ForgedTest, DataAreFinite) {
   EXPECT_TRUE(contains(after("data/x", [](auto& b) { b(1, 2) = kNan; }),
-                       "array data/x holds what is no number"));
+                       "array data/x contains values that are not finite"));
 }
 
 TEST_F(ForgedTest, TypesAndShapesAreNamed) {
   EXPECT_TRUE(contains(after("data/x", [](auto& b) { b.transposeInPlace(); }),
                        "array data/x has the shape 2 x 3"));
-  EXPECT_TRUE(contains(after("stages/0_fit/iterations",
-                             [](auto& b) { b.conservativeResize(2, 1); }),
-                       "array stages/0_fit/iterations has 2 entries where 3"));
+  EXPECT_TRUE(
+      contains(after("stages/0_fit/iterations",
+                     [](auto& b) { b.conservativeResize(2, 1); }),
+               "array stages/0_fit/iterations has 2 entries; expected 3"));
   const auto with_type = [&](const std::string& array, hid_t type, int rank) {
     return after([&](hid_t file) {
       hdf5::remove(file, array);
@@ -184,7 +185,7 @@ TEST_F(ForgedTest, DataOfAnotherSeedAreNamed) {
   file.save(Folder(directory_ / "cases"));
   EXPECT_TRUE(
       contains(message_of<StoreError>([&] { load_results(directory_.path()); }),
-               "its data are not those of the journal's line"));
+               "its data differ from the journal line"));
 }
 
 }  // namespace

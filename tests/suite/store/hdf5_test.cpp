@@ -138,7 +138,7 @@ TEST(Hdf5, NothingIsMadeForArraysThatAreNotThere) {
   put_array(file, "huge", H5T_IEEE_F64LE, {huge, 3});
   for (const char* name : {"never written", "huge"})
     EXPECT_EQ(message_of<StoreError>([&] { hdf5::read_batch(file, name); }),
-              fmt::format("array {} is not all there", name));
+              fmt::format("array {} is incomplete", name));
   put_array(file, "long", H5T_IEEE_F64LE, {huge});
   EXPECT_THROW(hdf5::read_list(file, "long"), StoreError);
 }

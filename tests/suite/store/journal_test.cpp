@@ -118,7 +118,7 @@ TEST_F(JournalTest, NewerSchemaIsRefused) {
         load_results(out_.path());
       }
     });
-    EXPECT_TRUE(contains(message, "schema version 2"));
+    EXPECT_TRUE(contains(message, "schema version is 2"));
   }
 }
 

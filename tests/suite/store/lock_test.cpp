@@ -88,7 +88,7 @@ TEST_F(LockTest, WhoHasEndedHereIsSucceeded) {
                            fmt::format("here {} earlier\n", getpid())}) {
     left(text);
     const DirectoryLock lock(folder_, without());
-    EXPECT_TRUE(contains(lock.warning(), "is taken over")) << lock.warning();
+    EXPECT_TRUE(contains(lock.warning(), "is replaced")) << lock.warning();
     EXPECT_EQ(owner(), fmt::format("here {} this\n", getpid()));
   }
 }
@@ -138,7 +138,7 @@ TEST_F(LockTest, StoresAndMergesSayIt) {
 TEST_F(LockTest, FilesOfOthersAreNotWrittenInto) {
   write_file(out_ / "precious", "kept");
   fs::create_hard_link(out_ / "precious", out_ / "lock");
-  EXPECT_TRUE(contains(refusal({}), "has other names"));
+  EXPECT_TRUE(contains(refusal({}), "other hard links"));
   fs::remove(out_ / "lock");
   fs::create_symlink("precious", out_ / "lock");
   EXPECT_TRUE(contains(refusal({}), "it is a link"));

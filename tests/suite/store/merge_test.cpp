@@ -167,7 +167,7 @@ TEST_F(MergeTest, OtherOptionsAreRefused) {
   const auto message = message_of<UnreadableInput>([&] {
     merge({out_ / "even", out_ / "odd"}, out_ / "merged");
   });
-  EXPECT_TRUE(contains(message, "with other options")) << message;
+  EXPECT_TRUE(contains(message, "with different options")) << message;
   EXPECT_TRUE(contains(message, (out_ / "odd").string())) << message;
   EXPECT_FALSE(std::filesystem::exists(out_ / "merged"));
 }
@@ -232,7 +232,7 @@ TEST_F(MergeTest, LostArraysOfAShardAreNamed) {
   std::filesystem::remove(Catalog(out_ / "odd").case_path(names_[1]));
   const auto merged = merge({out_ / "even", out_ / "odd"}, out_ / "merged");
   ASSERT_EQ(merged.warnings.size(), 2U);
-  EXPECT_TRUE(contains(merged.warnings[0], names_[1] + " fit are gone"));
+  EXPECT_TRUE(contains(merged.warnings[0], names_[1] + " fit are missing"));
   EXPECT_EQ(merged.lacks.unrun_cases, std::vector{names_[1]});
 }
 

@@ -1,4 +1,4 @@
-// One list of what can be stored: what it accepts is read back, and what it
+// One list of what the limit is: what it accepts is read back, and what it
 // refuses is refused by readers.
 #include "suite/store/storable.h"
 
@@ -42,21 +42,21 @@ TEST(Storable, WhatTheListRefusesReadersRefuse) {
       {"x has 5", [](StageRecord& r) { r.x.setZero(2, 5); }},
       {"curve/seconds has 6",
        [](StageRecord& r) { r.curve.seconds.push_back(1); }},
-      {"status holds 9",
+      {"status contains 9",
        [](StageRecord& r) { r.status[1] = static_cast<Status>(9); }},
-      {"iterations holds",
+      {"iterations contains",
        [](StageRecord& r) { r.example_iterations(2) = kNan; }},
-      {"evaluations holds",
+      {"evaluations contains",
        [](StageRecord& r) { r.example_evaluations(2) = -1; }},
-      {"curve/iteration holds",
+      {"curve/iteration contains",
        [](StageRecord& r) { r.curve.iteration[1] = kInfinity; }},
-      {"loss holds", [](StageRecord& r) { r.stop = Stop::converged; }},
-      {"x holds", [](StageRecord& r) { r.x(0, 3) = kNan; }},
-      {"name that no file can have",
+      {"loss contains", [](StageRecord& r) { r.stop = Stop::converged; }},
+      {"x contains", [](StageRecord& r) { r.x(0, 3) = kNan; }},
+      {"invalid name",
        [](StageRecord& r) { r.arrays[ArrayKey::own("a/b")].setZero(1, 1); }},
-      {"name that no file can have",
+      {"invalid name",
        [](StageRecord& r) { r.arrays[ArrayKey::own("")].setZero(1, 1); }},
-      {"name that no file can have", [](StageRecord& r) {
+      {"invalid name", [](StageRecord& r) {
          r.arrays[ArrayKey::own(std::string_view("n\0l", 3))].setZero(1, 1);
        }}};
   for (const auto& [flaw, change] : wrong) {
@@ -94,7 +94,7 @@ TEST(Storable, ACasesFileIsNotLargerThanIsRead) {
   StageRecord r = sample_stage(kInfo, 0);
   EXPECT_EQ(flaw_of_new(r, 2), "");
   r.arrays[ArrayKey::own("large")].resize(1, Index{25} << 20);
-  EXPECT_TRUE(contains(flaw_of_new(r, 2), "can be stored")) << "of 200 MiB";
+  EXPECT_TRUE(contains(flaw_of_new(r, 2), "the limit is")) << "of 200 MiB";
   EXPECT_EQ(flaw_of(r), "") << "who has read it has read it";
 }
 

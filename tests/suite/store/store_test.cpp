@@ -276,7 +276,7 @@ TEST_F(StoreTest, NoResultsIsSaid) {
   for (const auto& directory : {out_.path(), out_ / "nowhere"}) {
     const auto message =
         message_of<UnreadableInput>([&] { load_results(directory); });
-    EXPECT_TRUE(contains(message, "no results there")) << message;
+    EXPECT_TRUE(contains(message, "no results")) << message;
   }
 }
 
@@ -307,8 +307,7 @@ TEST_F(StoreTest, ResultsFromBeforeThePlanAreNotAltered) {
   auto results = read_results(out_.path());
   results["context"]["date"] = "never";
   Folder(out_.path()).write("results.json", results_text(sealed(results)));
-  EXPECT_TRUE(contains(message_of<StoreError>(checked),
-                       "says otherwise of the context"));
+  EXPECT_TRUE(contains(message_of<StoreError>(checked), "about the context"));
   results["context"]["date"] = "yesterday";
   Folder(out_.path()).write("results.json", results_text(sealed(results)));
   EXPECT_NO_THROW(checked());
@@ -378,7 +377,7 @@ int fill_the_disk(const fs::path& out,
   }
   if (message.empty() || kept < 2) return 1;
   if (!contains(message, "cannot write ") ||
-      !contains(message, "finished stages are kept"))
+      !contains(message, "finished stages are saved"))
     return 2;
   if (static_cast<int>(load_results(out).cases().size()) != kept) return 3;
   make_room();
