@@ -12,9 +12,10 @@ BoundaryLoss::BoundaryLoss(VectorIn<double> lo,
                            VectorIn<double> hi,
                            double gamma)
     : lo_(lo), hi_(hi), gamma_(gamma) {
-  SUITE_CHECK(lo.size() == hi.size(), "one range per unknown");
-  SUITE_CHECK((lo.array() < hi.array()).all(), "every range has a width");
-  SUITE_CHECK(gamma > 0, "the wall has a steepness");
+  SUITE_CHECK(lo.size() == hi.size(), "there must be one range per unknown");
+  SUITE_CHECK((lo.array() < hi.array()).all(),
+              "every range must have a positive width");
+  SUITE_CHECK(gamma > 0, "gamma must be positive");
 }
 
 BoundaryLoss BoundaryLoss::over(BatchIn<double> samples, double gamma) {
@@ -27,10 +28,10 @@ void BoundaryLoss::add(BatchIn<double> x,
                        double weight,
                        VectorOut<double> loss,
                        BatchOut<double> gradient) const {
-  SUITE_CHECK(x.rows() == lo_.size(), "one range per unknown");
+  SUITE_CHECK(x.rows() == lo_.size(), "there must be one range per unknown");
   SUITE_CHECK(loss.size() == x.cols() && gradient.rows() == x.rows() &&
                   gradient.cols() == x.cols(),
-              "one loss and one gradient per column");
+              "there must be one loss and one gradient per column");
   for (Index i = 0; i < x.cols(); ++i) {
     double sum = 0;
     for (Index j = 0; j < x.rows(); ++j) {

@@ -21,7 +21,8 @@ class PriorGuess final : public Stage {
     const Index n = run.oracle.count();
     Outcome out;
     out.x = run.oracle.labelled().x;
-    SUITE_CHECK(out.x.rows() > 0, "a guess needs problems with a solution");
+    SUITE_CHECK(out.x.rows() > 0,
+                "a guess needs problems with known solutions");
     while (run.probe.proceed([&](BatchOut<double> x) { x = out.x; })) {
     }
     out.status.assign(static_cast<std::size_t>(n), Status::maxiter);

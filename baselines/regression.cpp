@@ -41,7 +41,7 @@ class Passes {
         seen[static_cast<std::size_t>(i)] = true;
     SUITE_CHECK(order_.size() == all && at_ <= all &&
                     std::find(seen.begin(), seen.end(), false) == seen.end(),
-                "a state of other examples");
+                "the checkpoint belongs to other examples");
   }
 
  private:

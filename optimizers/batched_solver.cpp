@@ -11,7 +11,7 @@ void BatchedSolver::open(BatchIn<double> x0) {
   const Index n = x0.cols();
   const auto count = static_cast<std::size_t>(n);
   d_ = x0.rows();
-  SUITE_CHECK(d_ > 0, "a solver needs unknowns");
+  SUITE_CHECK(d_ > 0, "a solver needs at least one unknown");
   rounds_ = 0;
   skipped_ = skipped_trials_ = 0;
   x_ = x0;
@@ -38,7 +38,7 @@ void BatchedSolver::open(BatchIn<double> x0) {
 void BatchedSolver::supply(VectorIn<double> loss, BatchIn<double> gradient) {
   const auto m = static_cast<Index>(active_.size());
   SUITE_CHECK(loss.size() == m && gradient.cols() == m && gradient.rows() == d_,
-              "one loss and one gradient per active problem");
+              "there must be one loss and one gradient per active problem");
   skipped_ += static_cast<std::uint64_t>(x_.cols() - m);
   for (const Index i : active_) ++evaluations_[static_cast<std::size_t>(i)];
   accepted_.clear();

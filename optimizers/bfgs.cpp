@@ -12,15 +12,15 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 void check(const BfgsOptions& o) {
   SUITE_CHECK(o.gtol >= 0 && o.stall >= 0 && o.maxiter >= 0,
-              "BFGS: gtol, stall and maxiter are numbers from 0 on");
+              "BFGS: gtol, stall and maxiter must not be negative");
   const LineSearchOptions& s = o.search;
   SUITE_CHECK(0 < s.decrease && s.decrease < s.curvature && s.curvature < 1,
-              "a line search has 0 < decrease < curvature < 1");
+              "a line search needs 0 < decrease < curvature < 1");
   SUITE_CHECK(s.xtol >= 0 && 0 <= s.min_step && s.min_step <= s.max_step,
-              "a line search has xtol from 0 on and 0 <= min_step <= max_step");
+              "a line search needs xtol >= 0 and 0 <= min_step <= max_step");
   SUITE_CHECK(s.max_evaluations > 0 && s.max_doublings >= 0 &&
                   s.max_zooms > 0 && s.max_together > 0,
-              "a line search may evaluate something");
+              "a line search needs at least one evaluation");
 }
 
 }  // namespace

@@ -11,12 +11,12 @@ namespace physinv {
 void BoldDescent::start(BatchIn<double> x0) {
   const BoldDescentOptions& o = options_;
   SUITE_CHECK(std::isfinite(o.first_step) && o.first_step > 0,
-              "a bold driver: the first step has a length");
+              "bold driver: first_step must be positive");
   SUITE_CHECK(0 < o.shorter && o.shorter < 1 && 1 <= o.longer &&
                   std::isfinite(o.longer),
-              "a bold driver: 0 < shorter < 1 <= longer");
+              "bold driver: 0 < shorter < 1 <= longer must hold");
   SUITE_CHECK(o.evaluations >= 0,
-              "a bold driver: evaluations is a number from 0 on");
+              "bold driver: evaluations must not be negative");
   open(x0);
   step_.setConstant(x0.cols(), o.first_step);
 }

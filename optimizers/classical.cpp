@@ -49,8 +49,7 @@ double of_line_searches(const CaseSize& size, double search) {
 }
 
 void check_step(double first) {
-  SUITE_CHECK(std::isfinite(first) && first > 0,
-              "first_step is a positive number");
+  SUITE_CHECK(std::isfinite(first) && first > 0, "first_step must be positive");
 }
 
 double of_evaluations(const CaseSize& size) {
@@ -62,7 +61,7 @@ std::shared_ptr<const Stage> bfgs(const BfgsStageOptions& options,
                                   bool refines) {
   SUITE_CHECK(options.stall >= 0 && options.search_evaluations >= 0 &&
                   options.gtol >= 0,
-              "stall, search_evaluations and gtol are numbers from 0 on");
+              "stall, search_evaluations and gtol must not be negative");
   StageFacts stage = facts(
       "optimizers/bfgs.h",
       chained({{"algorithm", "bfgs"}, {"from", refines ? "previous" : "start"}},

@@ -17,11 +17,11 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 void check(const GradientDescentOptions& o) {
   SUITE_CHECK(o.first_step > 0 && o.first_step < kInf,
-              "gradient descent: the first step has a length");
+              "gradient descent: first_step must be positive");
   SUITE_CHECK(
       o.step_tolerance >= 0 && o.maxiter >= 0,
-      "gradient descent: step_tolerance, maxiter are numbers from 0 on");
-  SUITE_CHECK(o.substeps > 0, "an iteration needs a sub-step");
+      "gradient descent: step_tolerance and maxiter must not be negative");
+  SUITE_CHECK(o.substeps > 0, "gradient descent: substeps must be positive");
 }
 
 }  // namespace

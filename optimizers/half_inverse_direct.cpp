@@ -91,7 +91,7 @@ std::shared_ptr<const Stage> half_inverse_direct(
                          {"tau", options.power.tau},
                          {"beta", options.power.beta},
                          {"rate", options.rate}});
-  SUITE_CHECK(options.iterations >= 0, "iterations are a number from 0 on");
+  SUITE_CHECK(options.iterations >= 0, "iterations must not be negative");
   Sources sources;
   options.metrics.add_to(sources);
   const auto operations = [](const CaseSize& size) {

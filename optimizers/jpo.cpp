@@ -140,8 +140,8 @@ Outcome fit(const JpoOptions& options, StageRun& run) {
 std::shared_ptr<const Stage> jpo_fit(const JpoOptions& options) {
   check_rule<double>(options.step);
   SUITE_CHECK(0 <= options.clip && options.clip <= 1,
-              "clip is a quantile, in [0, 1]");
-  SUITE_CHECK(options.iterations >= 0, "iterations are a number from 0 on");
+              "clip is a quantile and must be in [0, 1]");
+  SUITE_CHECK(options.iterations >= 0, "iterations must not be negative");
   const auto operations = [](const CaseSize& size) {
     return static_cast<double>(size.n * size.iterations) *
            (3 * size.predictor_operations + 3 * size.problem_operations);

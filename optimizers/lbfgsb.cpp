@@ -24,10 +24,10 @@ Vector<double> each(const std::vector<double>& given, Index d, double none) {
 }
 
 void check(const LbfgsbOptions& o) {
-  SUITE_CHECK(o.memory > 0, "L-BFGS-B needs a memory of 1 pair at least");
+  SUITE_CHECK(o.memory > 0, "L-BFGS-B: memory must be at least 1");
   SUITE_CHECK(o.pgtol >= 0 && o.ftol >= 0 && o.maxiter >= 0 && o.maxfun >= 0,
-              "L-BFGS-B: pgtol, ftol, maxiter, maxfun are numbers from 0 on");
-  SUITE_CHECK(o.maxls > 0, "L-BFGS-B: a line search evaluates something");
+              "L-BFGS-B: pgtol, ftol, maxiter and maxfun must not be negative");
+  SUITE_CHECK(o.maxls > 0, "L-BFGS-B: maxls must be positive");
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ void Lbfgsb::set_box(Index d) {
     SUITE_CHECK(box_.lower(i) <= box_.upper(i) && box_.lower(i) < kInf &&
                     box_.upper(i) > -kInf,
                 fmt::format("unknown {}: no number lies between the bounds {} "
-                            "and {}; -inf and inf are for none",
+                            "and {}; give -inf and inf for no bounds",
                             i,
                             box_.lower(i),
                             box_.upper(i)));

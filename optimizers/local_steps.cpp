@@ -244,10 +244,10 @@ std::string_view to_string(LocalStep step) {
 
 std::shared_ptr<const Stage> local_steps(const LocalStepsOptions& options) {
   SUITE_CHECK(!options.rule || options.rate == LocalStepsOptions{}.rate,
-              "a rule of steps has its rate among its own options");
+              "set the rate of a step rule in the options of the rule");
   check_numbers<double>({{"rate", options.rate}});
   SUITE_CHECK(options.iterations >= 0 && options.paths >= 0,
-              "iterations and paths are numbers from 0 on");
+              "iterations and paths must not be negative");
   Sources sources;
   add_sources(options.rule.value_or(SgdOptions{}), sources);
   StageFacts facts{

@@ -16,7 +16,7 @@ NumericInverse::NumericInverse(CountedProblem<double> problem,
       options_(options),
       solver_({.pgtol = options.pgtol, .ftol = options.ftol}) {
   check_numbers<double>({{"difference", options.difference}});
-  SUITE_CHECK(options.difference >= 0, "a difference is not negative");
+  SUITE_CHECK(options.difference >= 0, "difference must not be negative");
 }
 
 void NumericInverse::invert(BatchIn<double> y,

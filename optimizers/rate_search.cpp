@@ -60,7 +60,7 @@ std::shared_ptr<const Stage> train_at_best_rate(const TrainingOptions& options,
                                                 const RateSearch& search) {
   SUITE_CHECK(!search.rates.empty() &&
                   std::is_sorted(search.rates.begin(), search.rates.end()),
-              "a search has rates, ascending");
+              "a search needs rates in ascending order");
   const auto plain = train(options);
   Options words = plain->options();
   std::erase_if(words, [](const auto& o) { return o.first == "rate"; });

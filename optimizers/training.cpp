@@ -32,34 +32,36 @@ void check(const HalfInverseStepOptions& o) {
                          {"tau", o.power.tau},
                          {"beta", o.power.beta},
                          {"rate", o.rate}});
-  SUITE_CHECK(std::abs(o.power.kappa) <= 1, "kappa lies in [-1, 1]");
-  SUITE_CHECK(o.power.tau >= 0, "tau is not negative");
-  SUITE_CHECK(o.numerics.tolerance >= 0 && o.numerics.gram_noise >= 0 &&
-                  o.numerics.largest_jacobian >= 0,
-              "tolerance, gram_noise, largest_jacobian are numbers from 0 on");
+  SUITE_CHECK(std::abs(o.power.kappa) <= 1, "kappa must be in [-1, 1]");
+  SUITE_CHECK(o.power.tau >= 0, "tau must not be negative");
+  SUITE_CHECK(
+      o.numerics.tolerance >= 0 && o.numerics.gram_noise >= 0 &&
+          o.numerics.largest_jacobian >= 0,
+      "tolerance, gram_noise and largest_jacobian must not be negative");
 }
 
 void check(const AdaHessianOptions& o) {
   check_numbers<double>({{"rate", o.rate}, {"power", o.power}, {"eps", o.eps}});
   SUITE_CHECK(o.rate >= 0 && o.power >= 0 && o.eps >= 0,
-              "rate, power and eps are not negative");
+              "rate, power and eps must not be negative");
   SUITE_CHECK(0 <= o.beta1 && o.beta1 < 1 && 0 <= o.beta2 && o.beta2 < 1,
-              "betas lie in [0, 1)");
+              "betas must be in [0, 1)");
 }
 
 void check(const HessianFreeOptions& o) {
   check_numbers<double>(
       {{"rate", o.rate}, {"damping", o.damping}, {"warm", o.warm}});
-  SUITE_CHECK(o.damping >= 0, "damping is not negative");
+  SUITE_CHECK(o.damping >= 0, "damping must not be negative");
   SUITE_CHECK(o.solver.iterations > 0 && o.solver.progress >= 0 &&
                   o.solver.residual >= 0,
-              "conjugate gradients take iterations, to tolerances from 0 on");
+              "conjugate gradients need at least one iteration, and their "
+              "tolerances must not be negative");
 }
 
 void check(const TrainingOptions& o) {
-  SUITE_CHECK(o.batch > 0, "a batch has a sample");
+  SUITE_CHECK(o.batch > 0, "batch must be positive");
   SUITE_CHECK(o.chunk >= 0 && o.set >= 0 && o.iterations >= 0,
-              "chunk, set and iterations are numbers from 0 on");
+              "chunk, set and iterations must not be negative");
   check_numbers<double>({{"gradient_scale", o.gradient_scale}});
   std::visit([](const auto& rule) { check(rule); }, o.rule);
 }
@@ -89,8 +91,8 @@ Needs needs(const TrainingOptions& options) {
   const auto products = [&](const std::optional<Needs>& asked) {
     SUITE_CHECK(asked.has_value(),
                 "the signal " + signal.algorithm +
-                    " has no products with second derivatives; rules of "
-                    "curvature take solver_loss()");
+                    " has no products with second derivatives; use "
+                    "solver_loss() with rules of curvature");
     return *asked | signal.gradient;
   };
   if (has_rule<StepOptions>(options)) return signal.gradient;

@@ -85,7 +85,7 @@ LibraryEnd minimize(const Task& task,
 std::shared_ptr<const physinv::Stage> dlib_solve(const Task& task,
                                                  const DlibOptions& options) {
   SUITE_CHECK(options.min_delta >= 0 && options.memory > 0,
-              "dlib's min_delta is not negative, its memory positive");
+              "dlib: min_delta must not be negative, memory must be positive");
   return library_solve(
       {.options = physinv::chained(physinv::describe(options),
                                    {{"library",

@@ -96,7 +96,7 @@ LibraryEnd minimize(const GslOptions& options,
 std::shared_ptr<const physinv::Stage> gsl_bfgs2(const Task& task,
                                                 const GslOptions& options) {
   SUITE_CHECK(options.step > 0 && options.tol > 0,
-              "GSL's step and tol are positive");
+              "GSL: step and tol must be positive");
   return library_solve(
       {.options =
            physinv::chained(physinv::describe(options),

@@ -141,7 +141,7 @@ void LibrarySolver::Run::run(const Library& library, Index iterations) {
   } catch (const std::exception& e) {
     failure(e.what());
   } catch (...) {
-    failure("threw what is no std::exception");
+    failure("threw something other than a std::exception");
   }
   if (!spent) return;
   end.status = Status::maxiter, end.success = false;
@@ -153,7 +153,7 @@ LibrarySolver::LibrarySolver(Library library, const Task& task)
       library_(std::move(library)),
       task_(task) {
   SUITE_CHECK(task.iterations >= 0 && task.evaluations > 0,
-              "a library has iterations from 0 on and evaluations");
+              "iterations must not be negative, evaluations must be positive");
 }
 
 LibrarySolver::~LibrarySolver() = default;

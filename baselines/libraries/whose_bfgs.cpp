@@ -90,7 +90,7 @@ physinv::Table table(const std::string& varied, const Evidence& e) {
           "f = better + equal / 2. Equal is bit by bit; in the last column "
           "also within 0.1 % of the solver's loss, and where both are below "
           "1e-6. bfgs is the suite's, which follows SciPy's; the paper's "
-          "numbers stand beside it. Rows named bfgs-... differ from it in the "
+          "numbers are next to it. Rows named bfgs-... differ from it in the "
           "length of their first trial, those with back-off halve their step "
           "at NaN."};
   for (const Column& c : columns()) table.columns.push_back(c.head);

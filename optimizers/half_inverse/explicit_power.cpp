@@ -106,7 +106,7 @@ bool ExplicitPower::decompose(Batch<double>& x, Vector<double>& h) {
 
 Ending ExplicitPower::factor(BatchIn<double> jacobian, VectorIn<double> g) {
   const Index m = jacobian.rows(), p = jacobian.cols(), n = std::min(m, p);
-  SUITE_CHECK(n > 0 && g.size() == m, "g has a number for each row of J");
+  SUITE_CHECK(n > 0 && g.size() == m, "g must have an entry for each row of J");
   spectrum_.lambda.setZero(n), spectrum_.c.setZero(n);
   spectrum_.scale = 1;
   state_caches();

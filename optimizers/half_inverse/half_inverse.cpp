@@ -88,7 +88,7 @@ std::span<const HalfInverseReport> HalfInverse::operator()(
     BatchOut<double> updates) {
   const Index m = g.size(), p = updates.rows();
   SUITE_CHECK(updates.cols() == static_cast<Index>(powers.size()),
-              "an update for each power");
+              "there must be one update for each power");
   reports_.assign(powers.size(), {});
   done_.assign(powers.size(), false);
   v_.resize(m, 1);

@@ -189,8 +189,8 @@ double Spectrum::s_max() const {
 PowerReport power_weights(const Spectrum& spectrum,
                           const Power& power,
                           VectorOut<double> weights) {
-  SUITE_CHECK(std::abs(power.kappa) <= 1, "kappa lies in [-1, 1]");
-  SUITE_CHECK(power.tau >= 0, "tau is not negative");
+  SUITE_CHECK(std::abs(power.kappa) <= 1, "kappa must be in [-1, 1]");
+  SUITE_CHECK(power.tau >= 0, "tau must not be negative");
   PowerReport report;
   report.s_max = spectrum.s_max();
   report.cut = power.cut(report.s_max);

@@ -20,7 +20,8 @@ PowerReport TallPower::operator()(TallColumns& a,
                                   const Power& power,
                                   VectorOut<double> update) {
   const Index n = update.size();
-  SUITE_CHECK(a.columns() == n + 1, "the columns of J, and g");
+  SUITE_CHECK(a.columns() == n + 1,
+              "the matrix must have the columns of J and g");
   top_.resize(n, n + 1);
   triangularize(a, n, top_);
   return of_triangle(top_, power, update);

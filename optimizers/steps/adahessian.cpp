@@ -31,10 +31,10 @@ void AdaHessian<T>::step(VectorIn<T> x,
                          VectorOut<T> to) {
   SUITE_CHECK(x.size() == gradient.size() && x.size() == curvature.size() &&
                   x.size() == to.size(),
-              "vectors of another size");
+              "vectors must have the same size");
   if (steps_ == 0) m_.setZero(x.size()), v_.setZero(x.size());
   SUITE_CHECK(m_.size() == x.size() && v_.size() == x.size(),
-              "the vector changed its size");
+              "the size of the vector must not change");
   ++steps_;
   average<T>(tensors_, curvature);
   const auto t = static_cast<double>(steps_);

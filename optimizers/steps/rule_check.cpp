@@ -14,14 +14,14 @@ void check(const AdamOptions& o) {
                     {"beta1", o.beta1},
                     {"beta2", o.beta2},
                     {"eps", o.eps}});
-  SUITE_CHECK(o.rate >= 0 && o.eps >= 0, "rate and eps are not negative");
-  SUITE_CHECK(decays(o.beta1) && decays(o.beta2), "betas lie in [0, 1)");
+  SUITE_CHECK(o.rate >= 0 && o.eps >= 0, "rate and eps must not be negative");
+  SUITE_CHECK(decays(o.beta1) && decays(o.beta2), "betas must be in [0, 1)");
 }
 
 template <class T>
 void check(const SgdOptions& o) {
   check_numbers<T>({{"rate", o.rate}, {"momentum", o.momentum}});
-  SUITE_CHECK(decays(o.momentum), "momentum lies in [0, 1)");
+  SUITE_CHECK(decays(o.momentum), "momentum must be in [0, 1)");
 }
 
 template <class T>
@@ -29,15 +29,15 @@ void check(const AdagradOptions& o) {
   check_numbers<T>(
       {{"rate", o.rate}, {"accumulator", o.accumulator}, {"eps", o.eps}});
   SUITE_CHECK(o.rate >= 0 && o.accumulator >= 0 && o.eps >= 0,
-              "rate, accumulator and eps are not negative");
+              "rate, accumulator and eps must not be negative");
 }
 
 /// Adadelta and RMSprop.
 template <class T, class Options>
 void check(const Options& o) {
   check_numbers<T>({{"rate", o.rate}, {"decay", o.decay}, {"eps", o.eps}});
-  SUITE_CHECK(o.rate >= 0 && o.eps >= 0, "rate and eps are not negative");
-  SUITE_CHECK(decays(o.decay), "decay lies in [0, 1)");
+  SUITE_CHECK(o.rate >= 0 && o.eps >= 0, "rate and eps must not be negative");
+  SUITE_CHECK(decays(o.decay), "decay must be in [0, 1)");
 }
 
 }  // namespace

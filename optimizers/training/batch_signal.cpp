@@ -126,12 +126,12 @@ double BatchSignal<T>::objective() {
 
 template <class T>
 void BatchSignal<T>::push_tangent(BatchIn<T>, bool, BatchOut<T>) {
-  SUITE_CHECK(false, "this signal is not known by second derivatives");
+  SUITE_CHECK(false, "this signal has no second derivatives");
 }
 
 template <class T>
 void BatchSignal<T>::weigh(BatchIn<T>, VectorOut<double>) {
-  SUITE_CHECK(false, "this signal gives no objective away from its gradient");
+  SUITE_CHECK(false, "this signal has no objective apart from its gradient");
 }
 
 template <class T>

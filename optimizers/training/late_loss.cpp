@@ -10,7 +10,7 @@ LateError late_loss(const ProblemRecipe& recipe, double share) {
           .of = [recipe](BatchIn<double> x, BatchIn<double> y) {
             const auto problem = recipe.make<double>();
             SUITE_CHECK(problem->shape().given == 0,
-                        "a late error sees nothing that is given");
+                        "a late error needs a problem without side input");
             const Batch<double> given(0, x.cols());
             Batch<double> answer(y.rows(), y.cols());
             Vector<double> loss(x.cols());

@@ -22,7 +22,7 @@ class State {
     auto last = run_.checkpoint->last();
     if (!last) return;
     serialize(*last);
-    SUITE_CHECK(last->at_end(), "a state of another training");
+    SUITE_CHECK(last->at_end(), "the checkpoint belongs to another training");
   }
 
   void save() {

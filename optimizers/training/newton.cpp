@@ -104,7 +104,8 @@ Vector<double> newton_step(const NewtonOptions& options,
 
 SignalRecipe newton_proxy(const NewtonOptions& options) {
   check_numbers<double>({{"damping", options.damping}});
-  SUITE_CHECK(options.limit > 0, "a step's limit is above 0, inf for none");
+  SUITE_CHECK(options.limit > 0,
+              "limit must be positive; give inf for no limit");
   constexpr Needs needs = Needs::vjp | Needs::hessian;
   return {.algorithm = fmt::format("newton flip={} damping={} limit={}",
                                    options.flip,

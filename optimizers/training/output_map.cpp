@@ -146,7 +146,7 @@ class MeanOfObservations final : public OutputMap<T> {
 
 template <class T>
 Batch<T> OutputMap<T>::outputs_of(BatchIn<T>) const {
-  SUITE_CHECK(false, "labels need a form of output that has an inverse");
+  SUITE_CHECK(false, "labels need an output form with an inverse");
   return {};
 }
 

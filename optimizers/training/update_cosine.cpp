@@ -51,7 +51,7 @@ class WatchedProxy final : public Signal<T> {
         !waits() || (input_.cols() == batches_.size() &&
                      target_.cols() == batches_.size() &&
                      before_.size() == unknowns && wanted_.size() == unknowns),
-        "a state of other batches");
+        "the checkpoint belongs to other batches");
   }
   void export_to(Outcome& out) const override {
     proxy_->export_to(out);

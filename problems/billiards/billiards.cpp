@@ -164,7 +164,7 @@ void check_options(const BilliardsOptions& o) {
   SUITE_CHECK(std::abs(o.ball_x - o.cue[0]) > 2 * o.radius,
               "the balls must start apart");
   SUITE_CHECK(o.ball_y[0] <= o.ball_y[1] && o.velocity_spread >= 0,
-              "ball_y is a range, velocity_spread is not negative");
+              "ball_y must be a range, velocity_spread must not be negative");
 }
 
 /// Travelled fraction until two balls a distance d apart, of relative speed u,

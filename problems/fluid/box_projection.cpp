@@ -74,7 +74,7 @@ BoxMasks::BoxMasks(Index n, const std::vector<Obstacle>& obstacles)
   for (const Obstacle& o : obstacles) {
     SUITE_CHECK(0 <= o.i0 && o.i0 < o.i1 && o.i1 <= n && 0 <= o.j0 &&
                     o.j0 < o.j1 && o.j1 <= n,
-                "an obstacle is a range of cells of the box");
+                "an obstacle must be a range of cells of the box");
     fluid.block(o.i0, o.j0, o.i1 - o.i0, o.j1 - o.j0).setZero();
     for (Index i = 0; i < n; ++i)
       for (Index j = 0; j < n; ++j) {

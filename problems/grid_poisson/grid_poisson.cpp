@@ -117,7 +117,7 @@ enum Slot : std::size_t { kPoison };
 }  // namespace
 
 Vector<double> poisson_potential(const Vector<double>& noise) {
-  SUITE_CHECK(noise.size() == 2 * kCells, "noise of 64 complex numbers");
+  SUITE_CHECK(noise.size() == 2 * kCells, "noise must have 64 complex numbers");
   static const Batch<double> kWaves = waves();
   using P = Pack<double>;
   constexpr Index kPacks = kCells / kLanes<double>;

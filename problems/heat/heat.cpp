@@ -131,7 +131,8 @@ void HeatModes::filter(BatchIn<T> in,
                        BatchOut<T> out,
                        Workspace& work) const {
   const Index m = fft_.positions();
-  SUITE_CHECK(gain.rows() == m && gain.cols() == m, "a gain for every mode");
+  SUITE_CHECK(gain.rows() == m && gain.cols() == m,
+              "gain must have an entry for every mode");
   check_size(in, fft_.field(), in.cols());
   check_size(out, fft_.field(), in.cols());
   const double scale = 1 / static_cast<double>(fft_.field());

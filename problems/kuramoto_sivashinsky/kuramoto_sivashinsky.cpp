@@ -111,12 +111,13 @@ class KuramotoSivashinsky final : public Problem<T>,
                       {"prior_high", o.prior_high},
                       {"start", o.start[0]},
                       {"start", o.start[1]}});
-    SUITE_CHECK(o.tape_budget >= 0, "tape_budget is a number of bytes");
+    SUITE_CHECK(o.tape_budget >= 0, "tape_budget must not be negative");
     SUITE_CHECK(o.cells >= 16 && (o.cells & (o.cells - 1)) == 0,
                 "cells must be a power of two, at least 16");
     SUITE_CHECK(o.box > 0 && o.time_step > 0 && o.steps > 0,
                 "box, time step and number of steps must be positive");
-    SUITE_CHECK(o.prior_low <= o.prior_high, "the prior has no width");
+    SUITE_CHECK(o.prior_low <= o.prior_high,
+                "prior_low must not exceed prior_high");
     circle_ = Circle(o.cells);
     kernels_ = std::make_unique<const Etdrk2Kernels<T>>(operators(o));
   }

@@ -24,7 +24,7 @@ FrequencyLoss::FrequencyLoss(Index cells, double falloff, double threshold)
       cosine_(static_cast<std::size_t>(cells)),
       sine_(cosine_) {
   SUITE_CHECK(falloff >= 0 && threshold > 0,
-              "falloff and threshold of the loss are positive");
+              "falloff must not be negative, threshold must be positive");
   for (std::size_t j = 0; j < cosine_.size(); ++j) {
     const double turn = double(j) / double(cells);
     cosine_[j] = math::cos(2 * std::numbers::pi * turn);

@@ -253,9 +253,10 @@ class MarkerFlow final : public Problem<T>, public Vjp<T>, public Inverse<T> {
     SUITE_CHECK(o.box > 0 && o.end_time > 0 && o.steps > 0,
                 "box, end time and number of steps must be positive");
     SUITE_CHECK(0 < o.fill[0] && o.fill[0] <= o.fill[1] && o.fill[1] <= 1,
-                "the marker fills a part of the square");
+                "fill must be a range within [0, 1]");
     SUITE_CHECK(o.half > 0 && o.width > 0 && o.moment > 0 && o.noise >= 0,
-                "sizes of the marker, the vortex and the noise");
+                "sizes of marker and vortex must be positive, noise must not "
+                "be negative");
     kernel_ = std::make_unique<const Kernel<T>>(o);
   }
 

@@ -251,23 +251,23 @@ class NavierStokes final : public Problem<T>,
                       {"vx", o.vx[1]},
                       {"vy", o.vy[0]},
                       {"vy", o.vy[1]}});
-    SUITE_CHECK(o.tape_budget >= 0, "tape_budget is a number of bytes");
+    SUITE_CHECK(o.tape_budget >= 0, "tape_budget must not be negative");
     SUITE_CHECK(0 <= o.bounded && o.bounded <= 3,
-                "bounded is a number of unknowns, 0 to 3");
+                "bounded must be a number of unknowns, 0 to 3");
     SUITE_CHECK(o.bounded < 2 || (-1 <= o.vx[0] && o.vx[1] <= 1),
-                "a bounded vx lies within speed");
+                "a bounded vx must lie in [-1, 1]");
     SUITE_CHECK(o.bounded < 3 || (0 <= o.vy[0] && o.vy[1] <= 2),
-                "a bounded vy lies within twice the speed");
+                "a bounded vy must lie in [0, 2]");
     SUITE_CHECK(o.vx[0] <= o.vx[1] && o.vy[0] <= o.vy[1],
-                "vx and vy are ranges");
+                "vx and vy must be ranges");
     SUITE_CHECK(o.cells >= 4 && o.cells % 2 == 0,
                 "cells must be an even number, at least 4");
     SUITE_CHECK(o.box > 0 && o.end_time > 0 && o.steps > 0,
                 "box, end time and number of steps must be positive");
     SUITE_CHECK(o.width > 0 && o.speed > 0 && o.noise >= 0,
-                "width, speed and noise of the blast and the flow");
+                "width and speed must be positive, noise must not be negative");
     SUITE_CHECK(0 < o.x0[0] && o.x0[0] <= o.x0[1] && o.x0[1] < 1,
-                "the blast is within the box");
+                "the blast must start within the box");
   }
 
   Shape shape() const override {

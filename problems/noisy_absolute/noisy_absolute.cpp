@@ -87,12 +87,12 @@ class NoisyAbsolute final : public Problem<T>, public Vjp<T> {
                       {"level", options.level},
                       {"decades", options.decades},
                       {"snr", options.snr}});
-    SUITE_CHECK(options.terms >= 0, "the number of terms is not negative");
-    SUITE_CHECK(options.gamma > 0, "gamma has a range");
+    SUITE_CHECK(options.terms >= 0, "the number of terms must not be negative");
+    SUITE_CHECK(options.gamma > 0, "gamma must be positive");
     SUITE_CHECK(options.level >= 0 && options.decades >= 0 && options.snr >= 0,
-                "levels and their ratio are not negative");
+                "decades and snr must not be negative");
     SUITE_CHECK(options.omega_max >= options.omega_min,
-                "frequencies have a range");
+                "omega_max must not be less than omega_min");
   }
 
   Shape shape() const override { return {1, 1, 3 + 3 * options_.terms}; }

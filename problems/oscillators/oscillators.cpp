@@ -266,7 +266,7 @@ class Oscillators final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
                       {"control", options.control},
                       {"deviation", options.deviation}});
     SUITE_CHECK(options.steps > 0 && options.dt > 0,
-                "there must be steps, forward in time");
+                "steps and dt must be positive");
     SUITE_CHECK(options.deviation >= 0, "deviation must not be negative");
   }
 

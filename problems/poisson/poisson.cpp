@@ -106,8 +106,8 @@ void iterate(const PoissonOptions& o,
 const PoissonOptions& checked(const PoissonOptions& o) {
   check_numbers<double>({{"relative", o.relative}});
   SUITE_CHECK(o.rows > 0 && o.columns > 0 && o.relative >= 0,
-              "a rectangle has cells, a tolerance is not negative");
-  SUITE_CHECK(o.most > 0, "conjugate gradients may take an iteration");
+              "a rectangle must have cells, a tolerance must not be negative");
+  SUITE_CHECK(o.most > 0, "conjugate gradients need at least one iteration");
   return o;
 }
 

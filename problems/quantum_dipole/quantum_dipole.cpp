@@ -188,7 +188,7 @@ enum Slot : std::size_t { kControls, kEnd };
 }  // namespace
 
 Vector<double> quantum_eigenstate(int k) {
-  SUITE_CHECK(k >= 1 && k <= kPoints, "there are 14 eigenstates");
+  SUITE_CHECK(k >= 1 && k <= kPoints, "an eigenstate must be one of the 14");
   Vector<double> psi(kPoints);
   for (int j = 1; j <= kPoints; ++j)
     psi(j - 1) = math::sin(std::numbers::pi * k * j / (kPoints + 1));
@@ -196,14 +196,14 @@ Vector<double> quantum_eigenstate(int k) {
 }
 
 double quantum_energy(int k) {
-  SUITE_CHECK(k >= 1 && k <= kPoints, "there are 14 eigenstates");
+  SUITE_CHECK(k >= 1 && k <= kPoints, "an eigenstate must be one of the 14");
   const double dx = 2.0 / (kPoints + 1);
   const double s = math::sin(std::numbers::pi * k / (2 * (kPoints + 1)));
   return 4 / (dx * dx) * s * s;
 }
 
 Vector<double> quantum_observation(const Vector<double>& real_state) {
-  SUITE_CHECK(real_state.size() == kPoints, "a state has 14 points");
+  SUITE_CHECK(real_state.size() == kPoints, "a state must have 14 points");
   Vector<double> y = Vector<double>::Zero(kRows);
   for (Index j = 0; j < kPoints; ++j) y(2 * j) = real_state(j);
   return y;
@@ -238,7 +238,7 @@ class QuantumDipole final : public Problem<T>,
     check_numbers<T>({{"dt", options.dt}, {"deviation", options.deviation}});
     check_numbers<double>("angles", options.angles);
     SUITE_CHECK(options.steps > 0 && options.dt > 0,
-                "there must be steps, forward in time");
+                "steps and dt must be positive");
     SUITE_CHECK(options.deviation >= 0, "deviation must not be negative");
   }
 

@@ -114,7 +114,7 @@ void advance(const ScalingFlow& flow,
   SUITE_CHECK(flow.power == 1 || flow.power == 2, "power must be 1 or 2");
   const Index n = alpha.size();
   for (const Index size : {start1.size(), start2.size(), x1.size(), x2.size()})
-    SUITE_CHECK(size == n, "as many starts and ends as alphas");
+    SUITE_CHECK(size == n, "there must be as many starts and ends as alphas");
   const Coefficients c = coefficients(flow);
   const Block<T> all{
       alpha.data(), start1.data(), start2.data(), x1.data(), x2.data()};

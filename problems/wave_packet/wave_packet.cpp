@@ -96,11 +96,12 @@ class WavePacket final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
                       {"range", o.range[0]},
                       {"range", o.range[1]}});
     SUITE_CHECK(o.samples > 0 && o.samples % 64 == 0,
-                "signals come in blocks of 64 samples");
+                "the number of samples must be a positive multiple of 64");
     // Below, the correction for the fraction of t0 would leave float's range.
-    SUITE_CHECK(o.width >= 1, "a packet is at least as wide as a sample");
+    SUITE_CHECK(o.width >= 1, "width must be at least 1");
     SUITE_CHECK(o.scale > 0 && o.noise >= 0 && o.range[0] <= o.range[1],
-                "scale, noise and range of the true centres");
+                "scale must be positive, noise must not be negative, range "
+                "must be a range");
     const double s = o.width;
     tables_.reach = static_cast<Index>(std::ceil(kReach<T> * s));
     const Index first = -tables_.reach - kBlock<T>;

@@ -17,7 +17,7 @@ const Ability* ability(const Problem<T>& problem, Needs allowed, Needs needs) {
 template <class Ability>
 const Ability& declared(const Ability* ability) {
   SUITE_CHECK(ability != nullptr,
-              "the method asked for what it did not declare");
+              "the method used a capability that it did not declare");
   return *ability;
 }
 

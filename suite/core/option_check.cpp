@@ -22,8 +22,8 @@ void check_number(const NamedNumber& number) {
   if (size > double(Limits::max()) ||
       (size != 0 && size < double(Limits::denorm_min())))
     throw ContractError(
-        fmt::format("{} = {} leaves the range of {}: give 0 or a size from {} "
-                    "to {}, or run it in double",
+        fmt::format("{} = {} is outside the range of {}: give 0 or a size from "
+                    "{} to {}, or run it in double",
                     name,
                     value,
                     std::is_same_v<T, float> ? "float" : "double",

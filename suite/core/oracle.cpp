@@ -85,7 +85,7 @@ Oracle::Oracle(const ProblemRecipe& recipe,
       all_(static_cast<std::size_t>(count)),
       work_(std::make_unique<Workspace>(threads)),
       measuring_(std::make_unique<Workspace>(threads)) {
-  SUITE_CHECK(count > 0, "a case has at least one problem");
+  SUITE_CHECK(count > 0, "a case must have at least one problem");
   shape_ = problem_->shape();
   operations_ = problem_->operations();
   data_ = disturbed(problem_->sample(0, count, rng_.child("data/test")));
@@ -119,7 +119,7 @@ void Oracle::evaluate(std::span<const Index> active,
   Side<T>& s = side<T>();
   const Index m = Packed<T>::size(active);
   SUITE_CHECK(x.rows() == shape_.unknowns && x.cols() == m && loss.size() == m,
-              "x and loss match the active problems");
+              "x and loss must match the active problems");
   Workspace::Scope scope(*work_);
   const Packed<T> data(s, active, *work_);
   auto y = work_->take<T>(shape_.observations, m);
@@ -136,11 +136,11 @@ void Oracle::evaluate(std::span<const Index> active,
   Side<T>& s = side<T>();
   const Index m = Packed<T>::size(active);
   SUITE_CHECK(s.vjp != nullptr && contains(allowed_, Needs::vjp),
-              "the method asked for a gradient it did not declare");
+              "the method requested gradients without declaring them");
   SUITE_CHECK(x.rows() == shape_.unknowns && x.cols() == m &&
                   loss.size() == m && gradient.rows() == x.rows() &&
                   gradient.cols() == m,
-              "x, loss and gradient match the active problems");
+              "x, loss and gradient must match the active problems");
   Workspace::Scope scope(*work_);
   const Packed<T> data(s, active, *work_);
   const auto given = data.given_of(s), target = data.y_of(s);
@@ -206,7 +206,7 @@ const Samples<double>& Oracle::labelled(Index per_problem) {
 
 Samples<double> Oracle::labelled(Index first, Index count) const {
   SUITE_CHECK(contains(allowed_, Needs::labels),
-              "the method asked for labels it did not declare");
+              "the method requested labels without declaring them");
   return disturbed(
       problem_->sample_labelled(first, count, rng_.child("data/train")));
 }

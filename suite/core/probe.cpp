@@ -145,7 +145,7 @@ void Probe::serialize(Archive& archive) {
                   next_ <= next_measured(iteration_) &&
                   curve_.seconds.size() == points &&
                   curve_.evaluations.size() == points,
-              "a state of another stage");
+              "the checkpoint belongs to another stage");
   if (points > 0) {
     check_size(curve_.loss, loss_.size(), curve_.points());
     check_size(curve_.x, tracked_ * x_.rows(), curve_.points());

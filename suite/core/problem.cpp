@@ -6,7 +6,7 @@ namespace physinv {
 
 template <>
 Samples<double> Problem<float>::draw_set(Index, Index, const Rng&, bool) const {
-  SUITE_CHECK(false, "samples are drawn in double");
+  SUITE_CHECK(false, "samples can only be drawn in double");
 }
 
 template <>

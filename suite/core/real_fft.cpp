@@ -53,7 +53,7 @@ template <class T>
 void check_aligned(const T* a, const T* b) {
   const auto bits =
       reinterpret_cast<std::uintptr_t>(a) | reinterpret_cast<std::uintptr_t>(b);
-  SUITE_CHECK(bits % kAlignment == 0, "transforms need aligned arrays");
+  SUITE_CHECK(bits % kAlignment == 0, "a transform needs aligned arrays");
 }
 
 }  // namespace
@@ -104,7 +104,8 @@ template <class T>
 RealFft<T>::RealFft(Index size, Index count, Codelets codelets)
     : signal_stride_(aligned<T>(size)),
       spectrum_stride_(aligned<T>(2 * (size / 2 + 1))) {
-  SUITE_CHECK(size >= 1 && count >= 1, "a transform of nothing");
+  SUITE_CHECK(size >= 1 && count >= 1,
+              "a transform needs at least one signal of at least one sample");
   plans_ = plans(size, count, codelets);
 }
 

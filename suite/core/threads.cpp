@@ -133,7 +133,7 @@ struct Threads::Pool {
 };
 
 Threads::Threads(int count) : count_(count) {
-  SUITE_CHECK(count >= 1, "a thread count is at least 1");
+  SUITE_CHECK(count >= 1, "the number of threads must be at least 1");
   if (count == 1) return;
   pool_ = std::make_unique<Pool>();
   try {
@@ -141,8 +141,9 @@ Threads::Threads(int count) : count_(count) {
   } catch (const std::system_error& error) {
     throw std::system_error(
         error.code(),
-        fmt::format(
-            "{} of {} threads start", pool_->workers.size() + 1, count));
+        fmt::format("only {} of {} threads could be started",
+                    pool_->workers.size() + 1,
+                    count));
   }
 }
 

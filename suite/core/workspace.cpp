@@ -47,7 +47,7 @@ std::size_t Workspace::bytes() const {
 Workspace& Workspace::of_thread(int thread) {
   const auto i = static_cast<std::size_t>(thread);
   SUITE_CHECK(i < per_thread_.size() || threads_ != nullptr,
-              "a workspace without threads has no thread workspaces");
+              "thread workspaces need a workspace with threads");
   if (per_thread_.empty()) {
     per_thread_.resize(static_cast<std::size_t>(threads_->count()));
     for (auto& w : per_thread_) w = std::make_unique<Workspace>();

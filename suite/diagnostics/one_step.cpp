@@ -456,12 +456,13 @@ void OneStep<T>::initialize(StreamLanes<T>& random) {
 
 template <class T>
 std::unique_ptr<OneStep<T>> one_step(const TinyNetOptions& options) {
-  SUITE_CHECK(!options.hidden.empty(), "a network has a hidden layer");
+  SUITE_CHECK(!options.hidden.empty(), "a network must have a hidden layer");
   SUITE_CHECK(options.scale > 0 && options.range > 0,
-              "scale and range are positive");
+              "scale and range must be positive");
   if (options.activation == TinyActivation::tanh)
     return std::make_unique<SmoothStep<T>>(options);
-  SUITE_CHECK(options.hidden.size() == 1, "ReLU has one hidden layer");
+  SUITE_CHECK(options.hidden.size() == 1,
+              "networks with ReLU must have one hidden layer");
   return std::make_unique<HingeStep<T>>(options);
 }
 

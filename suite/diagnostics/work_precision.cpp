@@ -23,7 +23,7 @@ namespace {
 
 Index ratio(Index fine, Index coarse) {
   SUITE_CHECK(coarse == 0 ? fine == 0 : fine % coarse == 0,
-              "a setting's size is no multiple of the base's");
+              "a setting's size must be a multiple of the base's");
   return coarse == 0 ? 1 : fine / coarse;
 }
 
@@ -110,7 +110,7 @@ class View {
   /// From y, of the base's resolution, and the problem's start.
   void set_observed(const Batch<double>& y) {
     SUITE_CHECK(finer_x_ == 1 && finer_y_ == 1,
-                "inverses are compared at the base's resolution");
+                "inverses can only be compared at the base's resolution");
     y_ = y.template cast<T>();
     start_ = problem_->start().template cast<T>().replicate(1, y.cols());
     x_bar_ = x_;

@@ -23,7 +23,7 @@ PivotedQr::PivotedQr(Batch<double> a)
       length_(v_.cols()),
       order_(static_cast<std::size_t>(v_.cols())) {
   const Index m = v_.rows(), n = v_.cols();
-  SUITE_CHECK(m >= n, "a tall matrix");
+  SUITE_CHECK(m >= n, "the matrix must have at least as many rows as columns");
   std::iota(order_.begin(), order_.end(), Index{0});
   for (Index j = 0; j < n; ++j) length_(j) = norm(m, v_.col(j).data());
   measured_ = length_;

@@ -160,7 +160,8 @@ void triangularize(TallColumns& a, Index pivots, BatchOut<double> r) {
   const Index rows = a.rows(), columns = a.columns();
   SUITE_CHECK(rows >= pivots && columns >= pivots && r.rows() == pivots &&
                   r.cols() == columns,
-              "a tall matrix and the top of its result");
+              "the matrix must have at least as many rows as columns and the "
+              "result its size");
   const Index end = round_up(rows, kWidth);
   if (!a.finite()) {
     r.setConstant(std::numeric_limits<double>::quiet_NaN());

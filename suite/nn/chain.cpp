@@ -10,10 +10,11 @@ namespace physinv::nn {
 template <class T>
 Chain<T>::Chain(Layers<T> layers)
     : layers_(std::move(layers)), slots_(layers_.size()) {
-  SUITE_CHECK(!layers_.empty(), "a network has at least one layer");
+  SUITE_CHECK(!layers_.empty(), "a network must have at least one layer");
   Index size = inputs();
   for (const auto& layer : layers_) {
-    SUITE_CHECK(layer->inputs() == size, "neighbouring layers differ in size");
+    SUITE_CHECK(layer->inputs() == size,
+                "a layer's inputs must match the outputs of the layer before");
     size = layer->outputs();
     widest_ = std::max({widest_, layer->inputs(), size});
     places_.push_back({parameter_count_, state_count_, slots_});

@@ -19,11 +19,12 @@ std::unique_ptr<Network<T>> make(const CnnOptions& o,
                                  Index inputs,
                                  Index outputs) {
   SUITE_CHECK(o.positions > 0 && o.channels > 0,
-              "the input has positions and channels");
-  SUITE_CHECK(all_positive(o.features), "a convolution has at least 1 feature");
-  SUITE_CHECK(o.taps > 0, "a convolution has taps");
+              "the input must have positions and channels");
+  SUITE_CHECK(all_positive(o.features),
+              "a convolution must have at least 1 feature");
+  SUITE_CHECK(o.taps > 0, "a convolution must have at least 1 tap");
   SUITE_CHECK(inputs == o.positions * o.channels,
-              "the network's grid is not that of its input");
+              "the network's grid does not match its input");
   Layers<T> layers;
   Index positions = o.positions, channels = o.channels;
   for (const Index width : o.features) {

@@ -73,7 +73,8 @@ class Conv final : public Layer<T> {
                 Rows<const T> y_bar,
                 Index offset,
                 std::vector<LayerRows<T>>& layers) const override {
-    SUITE_CHECK(padding_ == Padding::none, "patches reach into the padding");
+    SUITE_CHECK(padding_ == Padding::none,
+                "patches are only implemented without padding");
     const ConvShape& shape = conv_.shape();
     layers.push_back({.offset = offset,
                       .inputs = shape.depth(),
@@ -125,7 +126,8 @@ class ConvBlock final : public Layer<T> {
               .activation = activation,
               .pool = pool},
         batch_statistics_(o.batch_statistics) {
-    SUITE_CHECK(from_output(activation), "the activation needs a layer");
+    SUITE_CHECK(from_output(activation),
+                "this activation needs a separate layer");
   }
 
   std::vector<TensorInfo> tensors() const override {

@@ -41,14 +41,15 @@ template <class T>
 std::unique_ptr<Network<T>> make(const FnoOptions& o,
                                  Index inputs,
                                  Index outputs) {
-  SUITE_CHECK(o.grid.columns > 0 && o.grid.rows > 0, "a grid has positions");
+  SUITE_CHECK(o.grid.columns > 0 && o.grid.rows > 0,
+              "a grid must have at least one position");
   SUITE_CHECK(inputs == o.grid.positions() && outputs == o.grid.positions(),
-              "the network's grid is not that of its input and output");
-  SUITE_CHECK(o.blocks >= 1, "an operator has at least one block");
-  SUITE_CHECK(o.modes >= 1, "an operator keeps at least one mode");
+              "the network's grid does not match its input and output");
+  SUITE_CHECK(o.blocks >= 1, "an operator must have at least one block");
+  SUITE_CHECK(o.modes >= 1, "an operator must have at least one mode");
   SUITE_CHECK(o.width >= 1 && o.hidden >= 1,
-              "width and hidden are numbers of channels, at least 1");
-  SUITE_CHECK(o.padding >= 0, "padding is not negative");
+              "width and hidden must be at least 1");
+  SUITE_CHECK(o.padding >= 0, "padding must not be negative");
   const Grid period{o.grid.columns + o.padding, o.grid.rows + o.padding};
   Layers<T> layers;
   layers.push_back(coordinates<T>(o.grid));

@@ -19,8 +19,9 @@ template <class T>
 std::unique_ptr<Network<T>> make(const MlpOptions& o,
                                  Index inputs,
                                  Index outputs) {
-  SUITE_CHECK(all_positive(o.hidden), "a hidden layer has at least 1 feature");
-  SUITE_CHECK(o.frequencies >= 0, "frequencies are a number from 0 on");
+  SUITE_CHECK(all_positive(o.hidden),
+              "a hidden layer must have at least 1 feature");
+  SUITE_CHECK(o.frequencies >= 0, "frequencies must not be negative");
   Layers<T> layers;
   Index size = inputs;
   const auto add = [&](auto layer) {

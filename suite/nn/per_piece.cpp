@@ -22,7 +22,7 @@ class PerPiece final : public Layer<T> {
         pieces_(pieces),
         inner_(std::move(inner)) {
     SUITE_CHECK(inner_.slots() == inner_.size() && inner_.state_count() == 0,
-                "a piece's layers remember nothing");
+                "layers applied to pieces must not have a state");
   }
 
   std::vector<TensorInfo> tensors() const override { return inner_.tensors(); }

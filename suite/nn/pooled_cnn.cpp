@@ -74,11 +74,11 @@ template <class T>
 std::unique_ptr<Network<T>> make(const PooledCnnOptions& o,
                                  Index inputs,
                                  Index outputs) {
-  SUITE_CHECK(o.positions > 0, "the input has positions");
+  SUITE_CHECK(o.positions > 0, "the input must have positions");
   SUITE_CHECK(all_positive(o.features) && all_positive(o.hidden),
-              "a block and a hidden layer have at least 1 feature");
+              "blocks and hidden layers must have at least 1 feature");
   SUITE_CHECK(inputs == o.positions,
-              "the network's grid is not that of its input");
+              "the network's grid does not match its input");
   Builder<T> net(o);
   for (const Index width : o.features) net.block(width);
   net.flatten();

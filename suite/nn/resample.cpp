@@ -98,7 +98,7 @@ void each_output(
 
 void check_axis(Index n, Index m) {
   SUITE_CHECK(m == 2 * n || m == 2 * n + 1 || (n == 1 && m == 1),
-              "upsampling doubles an axis, plus one at most");
+              "upsampling must double an axis, or double it plus one");
 }
 
 template <class T>

@@ -64,7 +64,7 @@ struct Header {
   static constexpr Index kSize = 6;
   static Header read(const Tape& tape) {
     const auto s = tape.view<Index>(kHeader);
-    SUITE_CHECK(s.size() == kSize, "the tape holds no pass of a network");
+    SUITE_CHECK(s.size() == kSize, "the tape contains no pass of a network");
     return {s(0), s(1), s(2), s(3), s(4), s(5)};
   }
   void write(Tape& tape) const {
@@ -153,7 +153,8 @@ class Sequential final : public Network<T>, public RowJacobian<T> {
     Header header;
     if (pass.same_input) {
       header = Header::read(tape);
-      SUITE_CHECK(header.samples == n, "not the input of the last pass");
+      SUITE_CHECK(header.samples == n,
+                  "the input must be the one of the last pass");
       if (prefix_ > 0)
         work.counts[Counter::skipped_features] += static_cast<std::uint64_t>(n);
     }
@@ -291,7 +292,7 @@ class Sequential final : public Network<T>, public RowJacobian<T> {
     const Header header = Header::read(tape);
     const Index n = header.samples, rows = out_bar.cols(), per = rows / n;
     SUITE_CHECK(out_bar.rows() == outputs() && per * n == rows,
-                "as many rows for each sample");
+                "every sample must have the same number of rows");
     work.counts[Counter::network_backward] += static_cast<std::uint64_t>(rows);
     // One block, as the workspace grows by doubling.
     const std::size_t last = chain_.size() - 1;

@@ -29,7 +29,7 @@ class Skip final : public Layer<T> {
         inner_(std::move(inner)) {
     SUITE_CHECK(inner_.inputs() == own_ * positions &&
                     inner_.outputs() == more_ * positions,
-                "a skip connection joins fields on one grid");
+                "a skip connection needs fields on one grid");
   }
 
   std::vector<TensorInfo> tensors() const override { return inner_.tensors(); }

@@ -37,7 +37,7 @@ void add_level(
   add_double<T>(to, o, grid, in);
   if (levels == 1) return;
   SUITE_CHECK(grid.flat() == halved(grid).flat(),
-              "a u-net's coarsest plane has at least two rows");
+              "a u-net's coarsest grid must have at least two rows");
   Layers<T> inner;
   inner.push_back(max_pool<T>(grid, f));
   add_level<T>(inner, o, halved(grid), f, levels - 1);
@@ -50,16 +50,17 @@ template <class T>
 std::unique_ptr<Network<T>> make_unet(const UnetOptions& o,
                                       Index inputs,
                                       Index outputs) {
-  SUITE_CHECK(o.grid.columns > 0 && o.grid.rows > 0, "a grid has positions");
+  SUITE_CHECK(o.grid.columns > 0 && o.grid.rows > 0,
+              "a grid must have at least one position");
   SUITE_CHECK(o.channels > 0 && o.features > 0 && o.outputs > 0,
-              "channels, features and outputs are at least 1");
+              "channels, features and outputs must be at least 1");
   SUITE_CHECK(o.scalars_before >= 0 && o.scalars_after >= 0,
-              "scalars are numbers from 0 on");
+              "numbers of scalars must not be negative");
   SUITE_CHECK(o.hidden >= 0 && o.hidden < o.grid.columns,
-              "hidden is a number of columns, from 0 to less than all");
+              "hidden must be at least 0 and less than the number of columns");
   check_numbers<T>(
       {{"scalar_shift", o.scalar_shift}, {"scalar_unit", o.scalar_unit}});
-  SUITE_CHECK(o.scalar_unit != 0, "scalar_unit is not 0");
+  SUITE_CHECK(o.scalar_unit != 0, "scalar_unit must not be 0");
   const Index positions = o.grid.positions();
   const FieldInputOptions input{.positions = positions,
                                 .before = o.scalars_before,
@@ -71,10 +72,10 @@ std::unique_ptr<Network<T>> make_unet(const UnetOptions& o,
                                 .hidden = o.hidden};
   SUITE_CHECK(inputs == input.inputs() &&
                   outputs == o.outputs * (positions - o.hidden * o.grid.rows),
-              "the network's grid is not that of its input and output");
+              "the network's grid does not match its input and output");
   SUITE_CHECK(o.hidden == 0 || o.outputs > 1,
-              "a u-net hides columns of two fields or more");
-  SUITE_CHECK(o.levels >= 1, "a u-net has at least one level");
+              "hidden columns need a u-net with two outputs or more");
+  SUITE_CHECK(o.levels >= 1, "a u-net must have at least one level");
   Layers<T> layers;
   if (input.width() > 1 || o.hidden > 0)
     layers.push_back(field_input<T>(input));

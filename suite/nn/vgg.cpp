@@ -25,11 +25,11 @@ std::unique_ptr<Network<T>> make_vgg(const VggOptions& o,
   Grid grid = o.grid;
   Index channels = o.channels;
   SUITE_CHECK(channels > 0 && grid.columns > 0 && grid.rows > 0,
-              "the input has channels and positions");
+              "the input must have channels and positions");
   SUITE_CHECK(all_positive(o.features) && all_positive(o.hidden),
-              "a block and a hidden layer have at least 1 feature");
+              "blocks and hidden layers must have at least 1 feature");
   SUITE_CHECK(inputs == channels * grid.positions(),
-              "the network's grid is not that of its input");
+              "the network's grid does not match its input");
   if (channels > 1)
     add(field_input<T>({.positions = grid.positions(), .channels = channels}));
   for (const Index width : o.features) {

@@ -69,13 +69,16 @@ std::vector<WindowRun> row_runs(Index outputs,
 Grid window_output(Grid grid, Taps taps, Padding padding) {
   if (padding != Padding::none) return grid;
   SUITE_CHECK(grid.flat() && taps.y == 1 && grid.columns >= taps.x,
-              "without padding: one dimension, and room for the taps");
+              "a convolution without padding needs one dimension and at least "
+              "as many positions as taps");
   return {grid.columns - taps.x + 1};
 }
 
 std::vector<WindowRun> window_runs(Grid grid, Taps taps, Padding padding) {
-  SUITE_CHECK(taps.x % 2 == 1 && taps.y % 2 == 1, "taps are odd per axis");
-  SUITE_CHECK(grid.columns > 0 && grid.rows > 0, "a grid has positions");
+  SUITE_CHECK(taps.x % 2 == 1 && taps.y % 2 == 1,
+              "the number of taps must be odd on each axis");
+  SUITE_CHECK(grid.columns > 0 && grid.rows > 0,
+              "a grid must have at least one position");
   if (padding == Padding::none)
     return row_runs(
         window_output(grid, taps, padding).columns, grid.columns, taps.x, 0);

@@ -149,7 +149,7 @@ TEST(NetworkOptions, Fno) {
                      [](O& o) { o.hidden = 0; }});
   EXPECT_NE(
       said<double>(fno({.grid = {5, 4}, .padding = 2, .modes = 0}), 20, 20)
-          .find("keeps at least one mode"),
+          .find("must have at least one mode"),
       std::string::npos);
 }
 
