@@ -110,11 +110,12 @@ Curves curves_of(const Results& results,
   return all;
 }
 
-/// Problems of a formula count no simulations.
+/// Are simulations counted along any curve, to its middle? Problems of a
+/// formula have none, and training by samples knows its sum only.
 bool simulate(const Curves& all) {
   return std::ranges::any_of(all, [](const auto& method) {
     return std::ranges::any_of(method.second, [](const MeanCurve& curve) {
-      return std::ranges::max(curve.spent) > 1;
+      return !curve.spent.empty() && curve.spent[curve.spent.size() / 2] > 1;
     });
   });
 }
@@ -155,10 +156,7 @@ Figure solved_by_budget(const CommonRuns& common,
   for (const Index n : some_of(common.sizes)) {
     const TargetCosts costs = target_costs(common, kSolvedTolerance, n);
     if (costs.problems == 0) continue;
-    const bool simulations =
-        std::ranges::any_of(costs.spent_simulations, [](const Costs& spent) {
-          return std::ranges::any_of(spent, [](double s) { return s > 1; });
-        });
+    const bool simulations = any_simulated(costs.simulations);
     Panel panel = cost_panel(simulations ? costs.simulations : costs.seconds,
                              costs.methods,
                              options.method_titles);

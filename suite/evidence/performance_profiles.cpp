@@ -89,12 +89,12 @@ std::string tolerance_text(double tolerance) {
 
 std::string target_note(const TargetCosts& costs) {
   std::string note = fmt::format(
-      "A problem ({}) is solved to tau when its loss is at most f_L + tau "
-      "(f_0 - f_L), where f_L is the lowest loss that any method found for it "
-      "and f_0 the lowest loss at which any method starts (More and Wild "
-      "2009). {} problems of n = {} and {} seed{}; {} more are left out "
-      "because they start at the target or without a finite loss. Costs "
-      "include all stages, also refinement. {}",
+      "A problem ({}) is solved to tau when its loss is at most f_L + tau (f_0 "
+      "- f_L) (More and Wild 2009): f_L is the lowest loss that any method "
+      "found for it, f_0 the lowest loss at which any method starts. {} "
+      "problems of n = {} and {} seed{}; {} more are left out because they "
+      "start at the target or without a finite loss. Costs include all stages, "
+      "also refinement. {}",
       costs.runs ? "one run: the mean test loss of one seed"
                  : "one example of one n and seed",
       costs.problems,
@@ -135,6 +135,13 @@ std::optional<LossRange> loss_range(const CommonRun& group, Index example) {
   }
   if (!std::isfinite(range.start)) return {};
   return range;
+}
+
+bool any_simulated(const std::vector<Costs>& simulations) {
+  return std::ranges::any_of(simulations, [](const Costs& costs) {
+    return std::ranges::any_of(
+        costs, [](double c) { return std::isfinite(c) && c > 1; });
+  });
 }
 
 Panel cost_panel(const std::vector<Costs>& values,
@@ -261,6 +268,7 @@ Figure distribution_figure(const CommonRuns& common,
           targets.back(),
           costs.problems)};
   for (const bool by_time : {true, false}) {
+    if (!by_time && !any_simulated(costs.simulations)) continue;
     Panel panel = cost_panel(by_time ? costs.seconds : costs.simulations,
                              costs.methods,
                              options.method_titles);
@@ -308,6 +316,7 @@ std::vector<Figure> performance_profile_figures(const CommonRuns& common,
     }
     if (note.empty()) note = target_note(costs);
     for (const bool by_time : {true, false}) {
+      if (!by_time && !any_simulated(costs.simulations)) continue;
       const auto& spent = by_time ? costs.seconds : costs.simulations;
       Panel panel = cost_panel(
           performance_ratios(spent), costs.methods, options.method_titles);

@@ -86,6 +86,10 @@ TargetCosts target_costs(const Results& results,
                          double tolerance,
                          std::size_t most = 12);
 
+/// Are there costs of more than the one simulation that each problem counts at
+/// least? Otherwise an axis of simulations shows nothing.
+bool any_simulated(const std::vector<Costs>& simulations);
+
 /// A curve for each method: the share of its costs up to x. No curves if nobody
 /// has a finite cost.
 Panel cost_panel(const std::vector<Costs>& values,
@@ -95,9 +99,9 @@ Panel cost_panel(const std::vector<Costs>& values,
 /// Tolerances of the runtime distribution: 24, four to a decade.
 std::vector<double> distribution_targets();
 
-/// performance_profile and time_to_target: two panels per tolerance, seconds
-/// and simulations; runtime_distribution: all targets together. If no two
-/// methods can be compared, the first two say why.
+/// performance_profile and time_to_target: panels of seconds and, where
+/// any are counted, of simulations per tolerance; runtime_distribution: all
+/// targets together. If no two methods can be compared, the first two say why.
 std::vector<Figure> performance_profile_figures(const CommonRuns& common,
                                                 const ProfileOptions& options);
 std::vector<Figure> performance_profile_figures(const Results& results,

@@ -79,5 +79,14 @@ TEST(BudgetFigures, SecondsWhereNothingIsSimulated) {
   EXPECT_EQ(solved.panels.at(0).x_label, "seconds");
 }
 
+TEST(BudgetFigures, SecondsWhereOnlyTheSumOfSimulationsIsKnown) {
+  CaseRecord network = solved_case("sgd", 2, 0, {0, 0.5});
+  network.stages.front().curve.evaluations = {0, 0};
+  network.stages.front().counts[Counter::vjp] = 80;
+  const Results results({network});
+  EXPECT_EQ(learning_curves(results, "toy", {}).panels.at(0).x_label,
+            "seconds");
+}
+
 }  // namespace
 }  // namespace physinv

@@ -153,6 +153,16 @@ TEST(ProfileFigures, AllTargetsAreOneDistribution) {
   EXPECT_NE(figure.note.find("24 pairs"), std::string::npos) << figure.note;
 }
 
+TEST(ProfileFigures, WithoutSimulationsThereIsNoAxisOfThem) {
+  CaseRecord a = case_of("a", {stage_of({{1}, {0}})}, 1),
+             b = case_of("b", {stage_of({{1}, {1}, {0}})}, 1);
+  for (CaseRecord* c : {&a, &b})
+    std::ranges::fill(c->stages.front().curve.evaluations, 0);
+  for (const Figure& figure : performance_profile_figures(
+           Results({a, b}), "e", {.title = "E", .tolerances = {0.1}}))
+    EXPECT_EQ(figure.panels.size(), 1U) << figure.id;
+}
+
 TEST(TargetCosts, WhatIsNotSolvedSpentAllThereWas) {
   const Results results({case_of("a", {stage_of({{1, 1}, {0, 1}})}),
                          case_of("b", {stage_of({{1, 1}, {0, 1}, {0, 0}})})});

@@ -37,18 +37,18 @@ const std::vector<Column> kColumns = {
 
 /// Every sweep of the campaign, whoever declared it.
 Table side_by_side(const Evidence& e) {
-  Table table{.id = "atlas",
-              .title = "Stability of all problems",
-              .digits = 0,
-              .corner = "problem, sweep",
-              .columns = {"points"},
-              .note =
-                  "Points by outcome. Float is good within 1e-3 of double, "
-                  "its adjoint within 1e-2; the adjoint is exact within "
-                  "1e-5 of central differences or their uncertainty, the "
-                  "Jacobian within 1e-8 of the adjoint. Undecided: no step "
-                  "of the differences is of use.",
-              .keys = {"problem", "sweep"}};
+  Table table{
+      .id = "atlas",
+      .title = "Stability of all problems",
+      .digits = 0,
+      .corner = "problem, sweep",
+      .columns = {"points"},
+      .note =
+          "Points by outcome. Float is good within 1e-3 of double, its adjoint "
+          "within 1e-2; the adjoint is exact within 1e-5 of central "
+          "differences or their uncertainty, the Jacobian within 1e-8 of the "
+          "adjoint. Undecided: no step of the differences is useful.",
+      .keys = {"problem", "sweep"}};
   for (const Column& c : kColumns) table.columns.emplace_back(c.title);
   for (const CaseRecord& c : e.results.cases()) {
     for (const StageRecord& s : c.stages) {

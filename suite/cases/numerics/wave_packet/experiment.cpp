@@ -62,8 +62,8 @@ Figure errors(const StageRecord* sweep) {
                 .title = "Errors over the position of the packet",
                 .columns = 1,
                 .note =
-                    "Samples stand at 1 to 256. Errors of gradients are "
-                    "relative to themselves or to 1e-2."};
+                    "Samples are at positions 1 to 256. Errors of gradients "
+                    "are relative to themselves or to 1e-2."};
   if (sweep == nullptr) return figure;
   Panel panel{
       .x_label = "position t0", .y_label = "relative error", .y_log = true};
