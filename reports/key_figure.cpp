@@ -54,6 +54,24 @@ const Picture& shown_of(const std::vector<Picture>& drawn) {
   return curves == drawn.end() ? drawn.front() : *curves;
 }
 
+/// "JPO" of "JPO: 0.1 off" and of "JPO, x".
+bool is_of(const Panel& panel, const std::string& method) {
+  return panel.title == method || panel.title.starts_with(method + ":") ||
+         panel.title.starts_with(method + ",");
+}
+
+/// Of the methods drawn the last panel of the one that ranks best; without
+/// ranks the last of all.
+const Panel& best_of(const Figure& figure, const Section& section) {
+  for (const Table& table : section.tables)
+    for (const TableRow& row : table.rows)
+      for (auto p = figure.panels.rbegin();
+           table.id == "standings" && p != figure.panels.rend();
+           ++p)
+        if (is_of(*p, row.label)) return *p;
+  return figure.panels.back();
+}
+
 }  // namespace
 
 std::optional<Figure> key_figure(const Section& section) {
@@ -84,18 +102,20 @@ std::optional<Figure> key_figure(const Section& section) {
 std::optional<Figure> before_and_after(const Section& section) {
   for (const Figure& figure : section.figures) {
     if (!figure.picture) continue;
-    const auto start = std::find_if(
-        figure.panels.begin(), figure.panels.end(), [](const Panel& p) {
-          return p.title.starts_with("start");
-        });
-    if (start == figure.panels.end() || &*start == &figure.panels.back())
-      continue;
-    return Figure{.id = "card-picture",
-                  .title = fmt::format(
-                      "{}, then {}", start->title, figure.panels.back().title),
-                  .panels = {*start, figure.panels.back()},
-                  .columns = 2,
-                  .picture = true};
+    for (const char* before : {"start", "truth"}) {
+      const auto first = std::ranges::find_if(
+          figure.panels,
+          [&](const Panel& p) { return p.title.starts_with(before); });
+      if (first == figure.panels.end()) continue;
+      const Panel& best = best_of(figure, section);
+      if (&*first == &best) break;
+      return Figure{
+          .id = "card-picture",
+          .title = fmt::format("{}, then {}", first->title, best.title),
+          .panels = {*first, best},
+          .columns = 2,
+          .picture = true};
+    }
   }
   return {};
 }

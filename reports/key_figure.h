@@ -18,8 +18,9 @@ namespace physinv {
 /// something to draw. Nothing if no panel has.
 std::optional<Figure> key_figure(const Section& section);
 
-/// Of the first picture with a first guess (a panel "start: ..."), this guess
-/// and what the last method found. Nothing if there is none.
+/// Of the first picture with a first guess (a panel "start: ...") or else a
+/// truth, this panel and what the method found that ranks best in the table of
+/// ranks, of those drawn. Nothing if there is none.
 std::optional<Figure> before_and_after(const Section& section);
 
 /// The card's picture as SVG, and what it shows in words: the key figure;

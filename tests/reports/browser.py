@@ -133,10 +133,15 @@ class Browser:
                               base64.b64decode(pdf["data"])))
 
     def picture(self, path, highest):
-        """Of the open page as PNG, from its top."""
-        size = self.value("[innerWidth, document.documentElement.scrollHeight]")
-        clip = {"x": 0, "y": 0, "width": size[0],
-                "height": min(size[1], highest), "scale": 1}
+        """Of the open page as PNG, from its top. The window is made as high, so
+        that it has what is laid out only where it is seen."""
+        for _ in range(2):  # what was not laid out may be less high
+            width, height = self.value(
+                "[innerWidth, document.documentElement.scrollHeight]")
+            height = min(height, highest)
+            self.call("Emulation.setDeviceMetricsOverride", width=width,
+                      height=height, deviceScaleFactor=1, mobile=False)
+        clip = {"x": 0, "y": 0, "width": width, "height": height, "scale": 1}
         png = self.call("Page.captureScreenshot", format="png", clip=clip,
                         captureBeyondViewport=True)
         with open(path, "wb") as f:

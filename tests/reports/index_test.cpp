@@ -182,6 +182,20 @@ TEST(Index, ACardShowsOneProblemBeforeAndAfter) {
   EXPECT_FALSE(before_and_after(one)) << "nothing after the first guess";
 }
 
+TEST(Index, ACardShowsWhatTheBestMethodFound) {
+  Figure fields{.id = "picture", .title = "Fields", .picture = true};
+  for (const char* title :
+       {"observed y*", "truth x*", "SIP, y", "SIP, x", "Adam, y", "Adam, x"})
+    fields.panels.push_back({.title = title});
+  Section one{.experiment = "sip/toy", .title = "Toy", .figures = {fields}};
+  ASSERT_TRUE(before_and_after(one));
+  EXPECT_EQ(before_and_after(one)->title, "truth x*, then Adam, x") << "last";
+  one.tables = {
+      {.id = "other", .rows = {{.label = "Adam"}}},
+      {.id = "standings", .rows = {{.label = "not drawn"}, {.label = "SIP"}}}};
+  EXPECT_EQ(before_and_after(one)->title, "truth x*, then SIP, x");
+}
+
 /// What a sentence of the index says of one claim.
 std::string sentence_of(const ClaimResult& claim) {
   Section one{.experiment = "jpo/toy", .title = "Toy", .claims = {claim}};
