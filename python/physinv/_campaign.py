@@ -37,7 +37,7 @@ def program():
     found = shutil.which("physinv-bench")
     if found is None:
         raise FileNotFoundError(
-            "there is no program physinv-bench; PHYSINV_BENCH names it")
+            "there is no program physinv-bench; set PHYSINV_BENCH to its path")
     return found
 
 
@@ -247,7 +247,7 @@ def _figure(directory, name):
     found = {full: path for alike in figures.values()
              for full, path in alike.items() if name in (full, path.stem)}
     if not found:
-        raise ValueError(f"there is no figure '{name}'; known are "
+        raise ValueError(f"there is no figure '{name}'; known figures: "
                          f"{', '.join(sorted(figures))}")
     if len(found) > 1:
         raise ValueError(f"there are several figures '{name}': "

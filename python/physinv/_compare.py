@@ -6,19 +6,19 @@ import numpy as np
 
 from physinv import _campaign
 
-# kSolvedLoss of suite/evidence/rank_test.h.
-_SOLVED = 1e-12
+# kSolvedByDefault of suite/results/solved_loss.h.
+_SOLVED = 1e-6
 _CONVERGED = ("gtol", "ftol")
 
 
 def compare(campaign, *others, **flags):
-    """One campaign: its methods beside each other, a dict for every experiment,
+    """One campaign: its methods compared, a dict for every experiment,
     n, method and stage: seeds, how many of them failed, problems, the median
     loss, shares of problems, medians of iterations of a problem and of seconds
     of a run. pandas.DataFrame takes it.
 
-    `solved`: the share of problems whose loss is below 1e-12, as in the tables
-    of the report. `converged`: the share at which the method met a tolerance
+    `solved`: the share of problems whose loss is at most 1e-6, as in
+    `physinv-bench compare`. `converged`: the share at which the method met a tolerance
     (status gtol or ftol), be it on a plateau. The problems of a run that failed have an
     infinite loss and count in both shares; iterations and seconds are of the
     other runs.
@@ -30,7 +30,7 @@ def compare(campaign, *others, **flags):
                                          format="json", **flags))
     if flags:
         raise TypeError(f"compare of one campaign has no {', '.join(flags)}; "
-                        "two campaigns take flags of physinv-bench compare")
+                        "flags of physinv-bench compare need two campaigns")
     return methods_of(_campaign.open(campaign))
 
 
@@ -58,7 +58,7 @@ def _row(results, key, stages):
         loss = np.concatenate([*(e["loss"] for e in each),
                                np.full(lost, np.inf)])
         row["loss"] = _median([np.where(np.isfinite(loss), loss, np.inf)])
-        row["solved"] = float((loss < _SOLVED).sum()) / problems
+        row["solved"] = float((loss <= _SOLVED).sum()) / problems
         row["converged"] = sum(map(status.count, _CONVERGED)) / problems
         row["iterations"] = _median([e["iterations"] for e in each])
     seconds = [s["seconds"] for s in ended if s["seconds"] is not None]

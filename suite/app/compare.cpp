@@ -288,7 +288,7 @@ bool parse_flags(const Arguments& arguments, CompareFlags& flags) {
         fmt::format("ratio from which a loss or time counts as worse for "
                     "--fail-on, and a time as changed (default 1.5); losses "
                     "below {:g} and times below {:g} ms count as equal",
-                    kSolvedLoss,
+                    kEqualLoss,
                     1e3 * kShortTime),
         &flags.thresholds.factor},
        {"--solved",

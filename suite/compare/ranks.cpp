@@ -113,7 +113,7 @@ Table rank_table(const std::vector<SideRank>& ranks,
       "{} stages; losses below {:g} are equal, below p = {:g} it is a "
       "difference. Problems of one network are not independent.",
       ranks.size(),
-      kSolvedLoss,
+      kEqualLoss,
       kSignificant);
   if (ranks.size() > table.rows.size())
     table.note += fmt::format(" {} more stages differ less surely.",

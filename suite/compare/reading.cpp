@@ -165,8 +165,8 @@ std::string end_text(const Reading& a, const Reading& b) {
 
 double loss_ratio(const Reading& a, const Reading& b) {
   if (std::isinf(a.loss.median) && std::isinf(b.loss.median)) return 1;
-  return std::max(b.loss.median, kSolvedLoss) /
-         std::max(a.loss.median, kSolvedLoss);
+  return std::max(b.loss.median, kEqualLoss) /
+         std::max(a.loss.median, kEqualLoss);
 }
 
 bool costs_compare(const Reading& a, const Reading& b) {

@@ -84,7 +84,7 @@ Direction end_direction(const Reading& from, const Reading& to);
 /// "converged -> failed: out of memory"; empty if the ends are the same.
 std::string end_text(const Reading& from, const Reading& to);
 
-/// b over a, both raised to kSolvedLoss; 1 if neither is finite.
+/// b over a, both raised to kEqualLoss; 1 if neither is finite.
 double loss_ratio(const Reading& a, const Reading& b);
 
 /// Costs, time and work, compare between stages that both converged or ran

@@ -60,8 +60,8 @@ double normal_p(double n, const Ranks& sum) {
 double decades_above(double a, double b) {
   const bool is_a = std::isfinite(a), is_b = std::isfinite(b);
   if (!is_a || !is_b) return is_a == is_b ? 0 : is_a ? -HUGE_VAL : HUGE_VAL;
-  return math::log10(std::max(a, kSolvedLoss)) -
-         math::log10(std::max(b, kSolvedLoss));
+  return math::log10(std::max(a, kEqualLoss)) -
+         math::log10(std::max(b, kEqualLoss));
 }
 
 SignedRank signed_rank(std::span<const double> differences) {

@@ -11,7 +11,7 @@
 
 namespace physinv {
 
-/// Decades by which loss `a` lies above `b`, both raised to kSolvedLoss;
+/// Decades by which loss `a` lies above `b`, both raised to kEqualLoss;
 /// infinite if only one is not finite, 0 if neither is.
 double decades_above(double a, double b);
 

@@ -17,7 +17,7 @@ namespace {
 /// start, infinite without a finite loss.
 double level_of(double loss, const LossRange& range) {
   if (!std::isfinite(loss)) return loss;
-  const double lowest = std::max(range.lowest, kSolvedLoss);
+  const double lowest = std::max(range.lowest, kEqualLoss);
   const double start = std::max(range.start, lowest);
   static const auto targets = distribution_targets();
   if (loss > start) return 2;

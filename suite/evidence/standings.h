@@ -30,7 +30,7 @@ struct Standings {
 
 /// Of losses at the end of the chains, by the hardest of the targets of the
 /// runtime distribution (performance_profiles.h) that they reach: losses that
-/// reach the same ones, that are below kSolvedLoss, or that are not finite, are
+/// reach the same ones, that are below kEqualLoss, or that are not finite, are
 /// equal. That of a chain that failed is not finite.
 Standings standings(const CommonRuns& common);
 

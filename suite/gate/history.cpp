@@ -80,7 +80,7 @@ bool losses_compare(const PastBaseline::Stage& a,
 }
 
 /// Losses that are solved are equal.
-double raised(double loss) { return std::max(loss, kSolvedLoss); }
+double raised(double loss) { return std::max(loss, kEqualLoss); }
 
 using Ratio = std::function<std::optional<double>(
     const PastBaseline&, const PastBaseline&, const std::string& group)>;

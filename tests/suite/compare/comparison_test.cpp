@@ -205,7 +205,7 @@ TEST(Compare, SolvedLossesAreEqual) {
   Reading a, b;
   a.loss.median = 1e-15, b.loss.median = 1e-20;
   EXPECT_DOUBLE_EQ(loss_ratio(a, b), 1);
-  b.loss.median = kSolvedLoss * 10;
+  b.loss.median = kEqualLoss * 10;
   EXPECT_DOUBLE_EQ(loss_ratio(a, b), 10);
 }
 

@@ -53,8 +53,9 @@ std::optional<double> middle(const std::vector<double>& values) {
 
 std::optional<double> solved(const std::vector<double>& losses) {
   if (losses.empty()) return {};
-  const auto below = std::count_if(
-      losses.begin(), losses.end(), [](double v) { return v < kSolvedLoss; });
+  const auto below = std::count_if(losses.begin(), losses.end(), [](double v) {
+    return v <= kSolvedByDefault;
+  });
   return 100 * static_cast<double>(below) / static_cast<double>(losses.size());
 }
 
@@ -98,10 +99,9 @@ Section own_report(const MatrixProblem& problem, const Evidence& evidence) {
          {.text = kNothing}});
   table.note = fmt::format(
       "Losses and iterations are those of a method's last stage, seconds of "
-      "all "
-      "its stages. solved: share of the problems of all seeds whose loss ends "
-      "below {:g}. {}",
-      kSolvedLoss,
+      "all its stages. solved: share of the problems of all seeds whose final "
+      "loss is at most {:g}. {}",
+      kSolvedByDefault,
       timed.note());
   return {.tables = {std::move(table)}};
 }
