@@ -169,7 +169,7 @@ std::map<std::string, std::string> experiment_pages(
       pages[folder_of(e) + ".md"] = page_of(e, ordered, papers, links);
     return pages;
   } catch (const nlohmann::json::exception& error) {
-    throw std::runtime_error(std::string("no digest of a campaign: ") +
+    throw std::runtime_error(std::string("not a digest of a campaign: ") +
                              error.what());
   }
 }

@@ -18,7 +18,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 double real(const Json& j) {
-  if (!j.is_number()) throw std::runtime_error("a curve has what is no number");
+  if (!j.is_number())
+    throw std::runtime_error("a curve contains something other than numbers");
   return j;
 }
 
@@ -26,7 +27,7 @@ template <std::size_t N>
 std::array<double, N> reals(const Json& list) {
   if (!list.is_array() || list.size() != N)
     throw std::runtime_error(
-        fmt::format("a curve has {} where {} numbers belong", list.dump(), N));
+        fmt::format("a curve has {}; expected {} numbers", list.dump(), N));
   std::array<double, N> out;
   std::transform(list.begin(), list.end(), out.begin(), real);
   return out;

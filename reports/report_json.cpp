@@ -140,8 +140,8 @@ ClaimResult claim_from(const Json& claim) {
   const std::string words = claim.at("verdict");
   const auto verdict = verdict_of(words);
   if (!verdict)
-    throw std::runtime_error(
-        fmt::format("no digest of a campaign: '{}' is no verdict", words));
+    throw std::runtime_error(fmt::format(
+        "not a digest of a campaign: '{}' is not a verdict", words));
   const bool paper = claim.at("origin") == "paper";
   return {
       .id = claim.at("id"),

@@ -251,7 +251,7 @@ std::string checked(Page&& page) {
   try {
     return page();
   } catch (const nlohmann::json::exception& error) {
-    throw std::runtime_error(std::string("no digest of a campaign: ") +
+    throw std::runtime_error(std::string("not a digest of a campaign: ") +
                              error.what());
   }
 }

@@ -46,7 +46,7 @@ class Inside {
   std::string until(std::string_view end) {
     const auto found = code_.text.find(end, at_);
     if (found == std::string::npos)
-      fail(fmt::format("'{}' is missing behind it", end));
+      fail(fmt::format("'{}' is missing after it", end));
     const std::string text = code_.text.substr(at_, found - at_);
     at_ = found + end.size();
     return text;
@@ -78,7 +78,7 @@ bool read_printed(const PlacedText& code, CauseNumber& number) {
   if (!is_words && !in.is_number()) return false;
   const std::string text = is_words ? in.quoted() : in.until(",");
   if (is_words && !in.take(",")) return false;
-  if (!is_words && !decimal<double>(text)) in.fail(text + " is no number");
+  if (!is_words && !decimal<double>(text)) in.fail(text + " is not a number");
   number.kind = CauseNumber::Kind::printed;
   number.text = text;
   number.of = in.quoted();
@@ -123,7 +123,7 @@ CauseNumber number_of(const PlacedText& code,
     return number;
   const auto found = conditions_of("", code, names);
   if (found.size() != 1 || !found.front().bounds.empty())
-    throw ExpressionError{code.place(0), "braces hold one number"};
+    throw ExpressionError{code.place(0), "braces must contain one number"};
   number.number = found.front();
   const auto& asks = number.number->quantities;
   const bool runs =
@@ -135,14 +135,14 @@ CauseNumber number_of(const PlacedText& code,
         return !q.printed().empty();
       });
   if (!runs && !printed)
-    throw ExpressionError{code.place(0),
-                          "this number has neither runs nor a paper behind it; "
-                          "printed(number, \"place\") and setting(\"text\") "
-                          "say where others come from"};
+    throw ExpressionError{
+        code.place(0),
+        "this number comes from neither runs nor a paper; use printed(number, "
+        "\"place\") or setting(\"text\") to name its source"};
   if (runs && !number.number->of_stages)
     throw ExpressionError{code.place(0),
-                          "published campaigns keep this number only 'of "
-                          "stages'; others are conditions, named by label"};
+                          "published campaigns store this number only 'of "
+                          "stages'; name a condition by its label for others"};
   if (!runs) number.kind = CauseNumber::Kind::printed;
   return number;
 }
@@ -178,8 +178,8 @@ std::vector<CauseNumber> numbers_of(const PlacedText& text,
   if (const auto bare = bare_numbers(text.text); !bare.empty())
     throw ExpressionError{
         text.place(bare.front().begin),
-        fmt::format("nothing says where '{}' comes from: {{\"label\"}}, "
-                    "{{printed({}, \"place\")}} or {{setting(\"{}\")}} do",
+        fmt::format("the source of '{}' is missing; use {{\"label\"}}, "
+                    "{{printed({}, \"place\")}} or {{setting(\"{}\")}}",
                     bare.front().text,
                     bare.front().text,
                     bare.front().text)};
@@ -191,7 +191,7 @@ std::vector<CauseNumber> numbers_of(const PlacedText& text,
     if (text.text[begin] == '}' || end == std::string::npos ||
         text.text[end] == '{')
       throw ExpressionError{text.place(begin),
-                            "braces hold one number, and are closed"};
+                            "braces must contain one number and be closed"};
     at = end + 1;
     all.push_back(number_of(text.part(begin + 1, end), begin, at, names));
   }

@@ -211,16 +211,16 @@ std::vector<std::string> errors_of(const Claim& claim,
     wrong.push_back(fmt::format("claim {} {}", claim.id, what));
   };
   if (claim.id.empty()) add("has no id");
-  if (claim.says.empty()) add("says nothing");
+  if (claim.says.empty()) add("has no statement");
   if (claim.id.starts_with('P') && claim.where.empty())
-    add("is the paper's by its id and does not say where");
+    add("needs the place in the paper, because its id begins with P");
   if (claim.conditions.empty() && claim.note.empty() && claim.cause.why.empty())
     add("has no conditions and neither note nor cause why");
   if (claim.cause.as == Verdict::reproduced ||
       claim.cause.why.find('\n') != std::string::npos)
-    add("has a cause that is none");
+    add("has an invalid cause");
   if (claim.cause.as != Verdict::not_reproduced && claim.cause.why.empty())
-    add("has a cause without a word");
+    add("has a cause without a text");
   if (rank_of(profiles, claim.judged_from()) ==
       static_cast<std::ptrdiff_t>(profiles.size()))
     add(fmt::format("is judged from the unknown profile '{}'",

@@ -16,9 +16,9 @@ namespace {
 Condition as_relation(Expression& e, const std::string& label, Quantity q) {
   const Token kind = e.take();
   if (kind.text != "printed" && kind.text != "stated")
-    throw ExpressionError{kind.place,
-                          "'as' asks for printed(\"name\", seeds) or "
-                          "stated(value, seeds)"};
+    throw ExpressionError{
+        kind.place,
+        "'as' needs printed(\"name\", seeds) or stated(value, seeds)"};
   e.expect("(");
   if (kind.text == "printed") {
     auto name = e.sum_as<std::string>();
@@ -68,9 +68,9 @@ std::vector<Condition> without_relation(const Expression& e,
   if (const auto* one = std::any_cast<Condition>(&value)) return {*one};
   if (const auto all = claim_value_as<std::vector<Condition>>(value)) {
     if (!label.empty())
-      throw ExpressionError{place,
-                            "the function has labels of its own: leave the "
-                            "line's away"};
+      throw ExpressionError{
+          place,
+          "the function has its own labels: remove the label of the line"};
     return *all;
   }
   return {reported(label, e.as<Quantity>(value, place))};

@@ -133,7 +133,7 @@ class Reader {
       std::size_t from = line.text.find_first_not_of(' ');
       if (first) from = indent;
       if (!first && indent > 0 && from == 0)
-        fail(line.place(), "a line that goes on is indented");
+        fail(line.place(), "a continuation line must be indented");
       if (!first) joined.append(" ", line.place());
       joined.append(line.text.substr(from), line.place(from));
     }
@@ -143,7 +143,7 @@ class Reader {
   void definitions() {
     const Line opening = lines_[next_++];
     if (opening.text != "```claims")
-      fail(opening.place(), "definitions stand in a block ```claims");
+      fail(opening.place(), "definitions must be in a block ```claims");
     PlacedText code;
     const auto take = [&] {
       if (!code.text.empty()) define(code, names_);
@@ -194,7 +194,7 @@ class Reader {
   void sentence(const PlacedText& paragraph) {
     if (!claim_) {
       if (parts_.empty())
-        fail(paragraph.place(0), "a document begins with '# <experiment>'");
+        fail(paragraph.place(0), "a document must begin with '# <experiment>'");
       return;  // for readers
     }
     std::string_view text = paragraph.text;
@@ -219,9 +219,9 @@ class Reader {
                        const PlacedText& paragraph) {
     if (!to.empty())
       fail(paragraph.place(0),
-           "a claim has one sentence, and what follows begins with Note:, "
-           "Fails:, Stronger:, Weaker:, Depends:, Contradiction:, Not run: "
-           "or Reported:");
+           "a claim has one sentence; the text after it must begin with Note:, "
+           "Fails:, Stronger:, Weaker:, Depends:, Contradiction:, Not run: or "
+           "Reported:");
     to = text;
   }
 
@@ -251,7 +251,7 @@ class Reader {
         return;
       }
       if (one.size() != 1)
-        fail(whole.place(open), "alternatives are single conditions");
+        fail(whole.place(open), "alternatives must be single conditions");
       alternatives.push_back(one.front());
     }
     if (alternatives.empty()) fail(whole.place(0), "a condition is missing");
@@ -273,7 +273,7 @@ class Reader {
     if (label.ends_with(": ")) {
       label.remove_suffix(2);
     } else if (!label.empty()) {
-      fail(whole.place(open), "a label ends with ': '");
+      fail(whole.place(open), "a label must end with ': '");
     }
     std::string text;
     if (const auto kept = label.rfind(kKept);
@@ -318,9 +318,10 @@ class Reader {
       if (n.kind == CauseNumber::Kind::setting && n.of.empty() &&
           !names(n.text))
         fail(cause_.place(n.begin),
-             fmt::format("neither sentence, note nor a label has the setting "
-                         "'{}'; a study's has its name behind it",
-                         n.text));
+             fmt::format(
+                 "neither the sentence, the note nor a label contains the "
+                 "setting '{}'; add the study's name to a setting of a study",
+                 n.text));
       if (!n.label.empty() && !any_condition(true, is_its))
         fail(cause_.place(n.begin),
              fmt::format("the claim has no condition '{}'", n.label));

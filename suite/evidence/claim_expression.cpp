@@ -133,7 +133,7 @@ ClaimValue Expression::factor() {
   ++next_;
   if (t.kind == Token::Kind::number) {
     if (const auto number = decimal<double>(t.text)) return *number;
-    throw ExpressionError{t.place, t.text + " is no number that fits"};
+    throw ExpressionError{t.place, t.text + " is outside the range of numbers"};
   }
   if (t.kind == Token::Kind::text) return t.text;
   if (t.kind == Token::Kind::name) return is("(") ? call(t) : value(t);

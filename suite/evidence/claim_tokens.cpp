@@ -63,7 +63,7 @@ std::pair<Token::Kind, std::size_t> token_at(const PlacedText& code,
     if (s.compare(k, 2, sign) == 0) return {Token::Kind::sign, k + 2};
   if (std::string_view("()[],+-*/<>=").find(s[k]) == std::string_view::npos)
     throw ExpressionError{code.place(k),
-                          fmt::format("'{}' means nothing here", s[k])};
+                          fmt::format("'{}' is not expected here", s[k])};
   return {Token::Kind::sign, k + 1};
 }
 

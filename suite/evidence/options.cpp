@@ -21,7 +21,7 @@ std::optional<double> number_of(const Options& options, std::string_view name) {
       std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size())
     throw UnreadableInput(fmt::format(
-        "option '{}' of a stage is '{}', a number is expected", name, text));
+        "option '{}' of a stage is '{}'; expected a number", name, text));
   return number;
 }
 

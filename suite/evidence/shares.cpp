@@ -19,7 +19,7 @@ Shares compare_losses(VectorIn<double> loss,
                       VectorIn<double> other,
                       Equality equality) {
   SUITE_CHECK(loss.size() == other.size() && loss.size() > 0,
-              "losses of the same problems");
+              "losses must be of the same problems");
   Index better = 0, equal = 0;
   for (Index i = 0; i < loss.size(); ++i) {
     if (!std::isfinite(loss[i])) continue;

@@ -33,7 +33,7 @@ Publication publication_from(const nlohmann::json& j) {
 }
 
 double real(const nlohmann::json& j) {
-  if (!j.is_number()) throw std::runtime_error("a value is no number");
+  if (!j.is_number()) throw std::runtime_error("a value is not a number");
   return j;
 }
 

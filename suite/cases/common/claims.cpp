@@ -32,7 +32,7 @@ std::vector<ClaimsOfExperiment> claims_of_folder(
   }
   throw UsageError(fmt::format(
       "there is no suite/cases/{}/claims.md, which add_claims reads; write it, "
-      "or take add_claims out of the line in experiments.def",
+      "or remove add_claims from the line in experiments.def",
       folder));
 }
 

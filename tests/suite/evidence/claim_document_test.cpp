@@ -147,7 +147,7 @@ TEST(ClaimDocument, NamesWhatIsWrongWithANumberOfACause) {
   EXPECT_NE(error_of_cause("is {setting(\"n = 5\")}").find("n = 5"),
             std::string::npos);
   EXPECT_TRUE(error_of_cause("is 12 %").starts_with(
-      "claims.md:7:11: nothing says where '12' comes from"));
+      "claims.md:7:11: the source of '12' is missing"));
   for (const char* text : {"is {2}",
                            "is {2",
                            "is 2}",
@@ -301,10 +301,10 @@ TEST(ClaimDocument, NamesThePlaceOfAnErrorAndWhatWouldBeRight) {
   EXPECT_EQ(error_of_expression("1 2"),
             "claims.md:5:9: '2' is not expected here");
   EXPECT_EQ(error_of_expression("1e999"),
-            "claims.md:5:7: 1e999 is no number that fits");
+            "claims.md:5:7: 1e999 is outside the range of numbers");
   EXPECT_EQ(error_of_expression("(1"), "claims.md:5:9: ')' is missing here");
   EXPECT_EQ(error_of_expression("Two ; 3"),
-            "claims.md:5:11: ';' means nothing here");
+            "claims.md:5:11: ';' is not expected here");
   EXPECT_EQ(error_of_expression("\"a\" - 1"),
             "claims.md:5:11: text - a number has no meaning");
   EXPECT_EQ(error_of_expression("1 + refuse()"), "claims.md:5:11: not today");
@@ -321,14 +321,14 @@ TEST(ClaimDocument, NamesThePlaceOfALineThatItCannotRead) {
             "claims.md:2:6: a heading is '## ID (place) from profile, no "
             "gate'");
   EXPECT_EQ(error("## A1\nSays\n\nSays more\n").substr(0, 42),
-            "claims.md:5:1: a claim has one sentence, a");
+            "claims.md:5:1: a claim has one sentence; t");
   EXPECT_EQ(error("## A1\nSays\n\n- no code\n"),
             "claims.md:5:3: a condition is 'label: `expression`', with both "
             "backticks");
   EXPECT_EQ(error("## A1\nSays\n\n- a: `1 > 0` and `2 > 1`\n"),
             "claims.md:5:13: 'or' is missing here");
   EXPECT_EQ(error("## A1\nSays\n\n- a:\nb: `1`\n"),
-            "claims.md:6:1: a line that goes on is indented");
+            "claims.md:6:1: a continuation line must be indented");
   EXPECT_EQ(error("```claims\na = 1\n"),
             "claims.md:2:1: this block has no end");
   EXPECT_EQ(error("```claims\nf(x) = f(x)\nb = f(1)\n```\n"),

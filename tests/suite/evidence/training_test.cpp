@@ -90,7 +90,7 @@ TEST_F(TrainingTest, OptionsAreNumbersOrAreRefused) {
     FAIL();
   } catch (const UnreadableInput& e) {
     EXPECT_STREQ(e.what(),
-                 "option 'rule' of a stage is 'adam', a number is expected");
+                 "option 'rule' of a stage is 'adam'; expected a number");
   }
 }
 

@@ -63,7 +63,7 @@ const Timed& timed_of(const std::string& experiment) {
       std::find_if(kTimed.begin(), kTimed.end(), [&](const Timed& t) {
         return t.experiment == experiment;
       });
-  SUITE_CHECK(at != kTimed.end(), "a table of the paper times it");
+  SUITE_CHECK(at != kTimed.end(), "the paper must have a time for it");
   return *at;
 }
 
@@ -135,7 +135,7 @@ CostLine cost_line(const std::string& experiment,
 
 void add_jacobian_times(Registry& r, const std::string& name) {
   const auto of = r.find(name);
-  SUITE_CHECK(of != nullptr, "what is timed is registered before");
+  SUITE_CHECK(of != nullptr, "the timed experiment must be registered before");
   r.add(experiment(*of, timed_of(name)));
 }
 

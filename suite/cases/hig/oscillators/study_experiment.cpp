@@ -34,7 +34,8 @@ Experiment experiment(Experiment e, Index batch) {
 
 void add_experiments(Registry& r) {
   const auto varied = r.find(kName);
-  SUITE_CHECK(varied != nullptr, "what is varied is registered before");
+  SUITE_CHECK(varied != nullptr,
+              "the varied experiment must be registered before");
   for (const Index batch : kAblationBatches) {
     register_study(study_of(batch), kName);
     r.add(experiment(*varied, batch));

@@ -37,7 +37,7 @@ double align_one_first_order(double snr) {
 double align_sum(Index n, double snr) { return align_one(snr * root(n)); }
 
 double align_vote(Index n, double snr) {
-  SUITE_CHECK(n > 0, "somebody votes");
+  SUITE_CHECK(n > 0, "the number of votes must be positive");
   const double p = 0.5 * math::erfc(-snr), q = 0.5 * math::erfc(snr);
   if (q == 0) return 1;
   if (p == 0) return 0;
@@ -61,7 +61,8 @@ double align_vote_printed(Index n, double snr) {
 }
 
 std::vector<double> response_curve(Index n, const Response& response) {
-  SUITE_CHECK(n > 0 && response.plasticity > 0, "a network and its examples");
+  SUITE_CHECK(n > 0 && response.plasticity > 0,
+              "n and plasticity must be positive");
   std::vector<double> rho{1};
   rho.reserve(static_cast<std::size_t>(n));
   const double decay = math::exp(-1 / response.plasticity);

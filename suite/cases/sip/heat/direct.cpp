@@ -45,7 +45,8 @@ class Descent final : public Solver {
 /// Those of the case's problem, with another noise floor if one is named.
 HeatOptions heat_of(const StageRun& run, double noise_floor = 0) {
   const HeatOptions* of_case = heat_options(run.oracle.inspect());
-  SUITE_CHECK(of_case != nullptr, "these solvers are of heat alone");
+  SUITE_CHECK(of_case != nullptr,
+              "these solvers only work for the heat problem");
   HeatOptions options = *of_case;
   options.noise_floor = noise_floor;
   return options;
