@@ -34,11 +34,12 @@ class ElementwiseStep {
   /// Leaves x and writes the new one to `to`, which may be the gradient.
   void step(VectorIn<T> x, VectorIn<T> gradient, VectorOut<T> to) {
     SUITE_CHECK(x.size() == gradient.size() && x.size() == to.size(),
-                "vectors of another size");
+                "vectors must have the same size");
     if (steps_ == 0)
       for (auto& k : kept_) k.setConstant(x.size(), initial_);
     for (const auto& k : kept_)
-      SUITE_CHECK(x.size() == k.size(), "the vector changed its size");
+      SUITE_CHECK(x.size() == k.size(),
+                  "the size of the vector must not change");
     ++steps_;
     sweep(static_cast<const Rule&>(*this).update(steps_),
           x,

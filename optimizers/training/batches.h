@@ -33,7 +33,7 @@ class Batches {
   void serialize(Archive& archive) {
     archive(drawn_, at_);
     SUITE_CHECK(drawn_ >= 0 && at_ >= 0 && (fresh_ || at_ < slices_),
-                "a state of other batches");
+                "the checkpoint belongs to other batches");
   }
 
   Index size() const { return size_; }

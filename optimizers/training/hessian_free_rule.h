@@ -49,7 +49,7 @@ class HessianFreeRule final : public Rule<T> {
     archive(damping_, start_, reports_, stored_);
     SUITE_CHECK(
         start_.size() == 0 || start_.size() == model_.parameters().size(),
-        "a state of another network");
+        "the checkpoint belongs to another network");
   }
   void export_to(Outcome& out) const override;
   std::size_t bytes() const override;

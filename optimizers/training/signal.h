@@ -61,24 +61,24 @@ class Signal {
 
 template <class T>
 Jacobians<T> Signal<T>::jacobians() {
-  SUITE_CHECK(false, "this signal is not known by its Jacobians");
+  SUITE_CHECK(false, "this signal has no Jacobians");
   static const Batch<T> none;
   return {none, none};
 }
 
 template <class T>
 void Signal<T>::hessian_product(const Vector<T>&, Vector<T>&) {
-  SUITE_CHECK(false, "this signal is not known by products with its Hessian");
+  SUITE_CHECK(false, "this signal has no products with its Hessian");
 }
 
 template <class T>
 void Signal<T>::gauss_newton_product(const Vector<T>&, Vector<T>&) {
-  SUITE_CHECK(false, "this signal is not known by Gauss-Newton products");
+  SUITE_CHECK(false, "this signal has no Gauss-Newton products");
 }
 
 template <class T>
 double Signal<T>::objective() {
-  SUITE_CHECK(false, "this signal gives no objective away from its gradient");
+  SUITE_CHECK(false, "this signal has no objective apart from its gradient");
   return 0;
 }
 

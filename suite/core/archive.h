@@ -51,7 +51,7 @@ class Archive {
   void one(bool& part) {
     auto byte = static_cast<unsigned char>(part);
     one(byte);
-    SUITE_CHECK(byte <= 1, "a state holds neither true nor false");
+    SUITE_CHECK(byte <= 1, "a boolean in the checkpoint is invalid");
     part = byte == 1;
   }
 
@@ -63,10 +63,10 @@ class Archive {
     SUITE_CHECK(r >= 0 && c >= 0 && r <= kLargest && c <= kLargest &&
                     (rows == Eigen::Dynamic || r == rows) &&
                     (cols == Eigen::Dynamic || c == cols),
-                "a state has no such shape");
+                "an array in the checkpoint has an invalid shape");
     SUITE_CHECK((matrix.rows() == 0 || r == matrix.rows()) &&
                     (matrix.size() == 0 || c == matrix.cols()),
-                "a state of another shape");
+                "an array in the checkpoint has another shape");
     require(r, require(c, sizeof(T)));
     matrix.resize(r, c);
     raw(matrix.data(), sizeof(T) * static_cast<std::size_t>(matrix.size()));
@@ -90,7 +90,7 @@ class Archive {
     std::size_t size = 0;
     SUITE_CHECK(!__builtin_mul_overflow(count, each, &size) &&
                     (!reading_ || size <= bytes_.size() - at_),
-                "a state is too short");
+                "the checkpoint is too short");
     return size;
   }
 
@@ -100,7 +100,7 @@ class Archive {
       bytes_.append(static_cast<const char*>(data), size);
       return;
     }
-    SUITE_CHECK(size <= bytes_.size() - at_, "a state is too short");
+    SUITE_CHECK(size <= bytes_.size() - at_, "the checkpoint is too short");
     std::memcpy(data, bytes_.data() + at_, size);
     at_ += size;
   }

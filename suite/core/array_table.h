@@ -31,10 +31,7 @@ inline constexpr ArrayInfo kArrays[] = {
     {"parameters", "networks,parameters", "1", "of the network"},
     {"state", "networks,numbers", "1", "running statistics of the network"},
     {"mean_loss", "points", "1", "mean test loss"},
-    {"metrics",
-     "points,metrics",
-     "1",
-     "what the experiment measures beside it"},
+    {"metrics", "points,metrics", "1", "further metrics of the experiment"},
     {"batch_loss", "updates", "1", "loss of the batch before its update"},
     {"training_loss",
      "networks",
@@ -93,7 +90,7 @@ inline constexpr ArrayInfo kArrays[] = {
     {"point", "cells,unknowns", "", "where derivatives were checked"},
     {"status", "cells,checks", "1", "what each check found", "point"},
     {"error", "cells,checks", "1", "of each check, relative", "point"},
-    {"error", "samples", "1", "relative to what is right"},
+    {"error", "samples", "1", "relative to the exact values"},
 
     // Half-inverses under stress (suite/diagnostics/half_inverse_stress.h).
     {"cell", "cells,axes", "1", "its position on each axis"},

@@ -165,7 +165,8 @@ class Layer {
                         Rows<const T> /*y_bar*/,
                         Index /*offset*/,
                         std::vector<LayerRows<T>>&) const {
-    SUITE_CHECK(tensors().empty(), "this layer gives no rows");
+    SUITE_CHECK(tensors().empty(),
+                "this layer cannot compute its Jacobian by rows");
   }
   /// Network::evaluate_plainly of this layer, y of the right size.
   virtual bool evaluate_plainly(const double* /*parameters*/,

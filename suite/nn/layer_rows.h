@@ -58,7 +58,7 @@ template <class T>
 const RowJacobian<T>& by_rows(const Network<T>& network) {
   const auto* rows = dynamic_cast<const RowJacobian<T>*>(&network);
   SUITE_CHECK(rows != nullptr,
-              "this network does not give its Jacobian by rows");
+              "this network cannot compute its Jacobian by rows");
   return *rows;
 }
 

@@ -37,7 +37,7 @@ class PlaneModes {
         rows_(waves(row_count, period.rows, grid.rows)),
         columns_(waves(column_count, period.columns, grid.columns)) {
     SUITE_CHECK(grid.rows <= period.rows && grid.columns <= period.columns,
-                "a field does not fit into its period");
+                "a field is larger than its period");
   }
 
   const Grid& grid() const { return grid_; }
