@@ -3,8 +3,8 @@
 
 README is short, every link leads to a file and place, commands have the verbs and
 flags of the program, counts are the program's and verdicts those of RESULTS.md,
-where what is not reproduced has a cause. Prose and help texts have short sentences
-and usual words.
+where what is not reproduced has a cause. Prose, help texts and what sources print
+have short sentences and usual words.
 Pages of papers have no measured numbers:
 those stand on pages that the program writes. The table of features has a sign of
 each suite. The baseline of CI has all cases of its profile. A source that a page or
@@ -19,6 +19,7 @@ import subprocess
 import sys
 
 from documented import commands, pages
+from literals import printed
 
 PROGRAM, SOURCES = sys.argv[1:3]
 LINES_OF_README = 150
@@ -48,7 +49,7 @@ def dead_links(name, text):
 
 
 # Of Google Benchmark, and examples.
-OTHER_SOURCES = {"compare.py", "x.h", "x.cpp"}
+OTHER_SOURCES = {"compare.py", "first.py", "x.h", "x.cpp"}
 
 
 @functools.cache
@@ -123,10 +124,10 @@ def prose(text):
             yield re.sub(r"\]\([^)]*\)|`[^`]*`", "x", " ".join(block.split()))
 
 
-def not_plain(name, text):
+def not_plain(name, text, unusual=UNUSUAL):
     """Words that have a usual one, and sentences that are too long."""
     for words in prose(text):
-        for found in UNUSUAL.finditer(words):
+        for found in unusual.finditer(words):
             yield (f"{name}: '{found[0]}' in "
                    f"'{words[max(0, found.start() - 30):found.end() + 30]}'")
         for sentence in re.split(r"(?<=[.!?:;])\s+", words):
@@ -146,6 +147,30 @@ def help_not_plain():
         words = re.sub(r"\s*\n\s*", "\n\n", re.sub(r"`.*?`", "x", words))
         name = " ".join(["--help of", *verb])
         yield from not_plain(name, words.replace("  ", ": "))
+
+
+# The same of texts in sources: is not a, known values, expected, continues, ...
+UNUSUAL_PRINTED = re.compile(
+    UNUSUAL.pattern.replace("c[ao]mes? to", "c[ao]mes? to(?! rest)") +
+    r"|(?<!there )\bis no\b(?! longer)|\b(?:known|nearest) are\b|"
+    r"\b(?:is|are) right\b|\blaid\b|\bstands?\b (?:twice|still|for)|"
+    r"\bgo(?:es|ing)? on\b|\bwant of\b|\bmakes? up for\b|\basked? for\b|"
+    r"\bof (?:its|their) own\b|\bnumbers? from \d+ on\b|\bis of\b", re.I)
+# Titles and names that published campaigns store.
+STORED = {"Small batches, and Gauss-Newton beside HIG",
+          "Sizes and seeds stand below the table of each experiment.",
+          "motions that nobody observes"}
+
+
+def not_plainly_printed():
+    """The same of what programs print, and that their sources are found."""
+    count = 0
+    for place, words in printed(SOURCES):
+        count += 1
+        if words not in STORED:
+            yield from not_plain(place, words, UNUSUAL_PRINTED)
+    if count < 1000:
+        yield f"only {count} texts found in the sources"
 
 
 SUITES = 17
@@ -275,7 +300,8 @@ def unexplained():
 
 def main():
     wrong = [*wrong_counts(), *wrong_verdicts(), *unexplained(), *features(),
-             *baseline(), *lost_in_comments(), *help_not_plain()]
+             *baseline(), *lost_in_comments(), *help_not_plain(),
+             *not_plainly_printed()]
     lines = read("README.md").count("\n")
     if lines > LINES_OF_README:
         wrong.append(f"README.md has {lines} lines, of {LINES_OF_README}")

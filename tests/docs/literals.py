@@ -1,0 +1,36 @@
+"""Texts that C++ sources print: runs of adjacent string literals."""
+
+import os
+import re
+
+FOLDERS = ("suite", "problems", "optimizers", "baselines", "reports",
+           "python/module")
+# Comments, raw strings, characters and directives are skipped, so that a quote in
+# one of them begins nothing.
+TOKEN = re.compile(
+    r"""//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|'(?:[^'\\\n]|\\.)+'"""
+    r"""|^[ \t]*\#[^\n]*|(?P<run>"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*)""",
+    re.S | re.M)
+LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
+
+
+def literals(text):
+    """Line and text of each run that has two words."""
+    for found in TOKEN.finditer(text):
+        if found["run"]:
+            words = "".join(LITERAL.findall(found["run"]))
+            words = re.sub(r"\\n", " ", re.sub(r'\\(["\\])', r"\1", words))
+            if re.search(r"[a-z]{2,} [a-z]{2,}", words):
+                yield text.count("\n", 0, found.start()) + 1, words
+
+
+def printed(sources):
+    """Place and text of each literal of the sources."""
+    for folder in FOLDERS:
+        for path, _, names in os.walk(os.path.join(sources, folder)):
+            for name in sorted(names):
+                if name.endswith((".h", ".cpp")):
+                    file = os.path.join(path, name)
+                    with open(file) as f:
+                        for line, words in literals(f.read()):
+                            yield f"{os.path.relpath(file, sources)}:{line}", words
