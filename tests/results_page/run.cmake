@@ -42,6 +42,6 @@ execute_process(
   RESULT_VARIABLE code ERROR_VARIABLE error)
 file(READ ${work}/made/docs/results/jpo-billiards.md notes)
 if(NOT code EQUAL 9 OR NOT notes STREQUAL "notes of mine\n"
-   OR NOT error MATCHES "docs/results/jpo-billiards.md is no page of results")
+   OR NOT error MATCHES "docs/results/jpo-billiards.md is not a page written by")
   message(FATAL_ERROR "a page of the user's: exit ${code}, ${error}")
 endif()
