@@ -56,7 +56,7 @@ need() {
   [[ -r $stamp ]] && read -r known <"$stamp"
   [[ $known == "${packages[*]}" ]] && return
   command -v dpkg-query >/dev/null ||
-    { say "no Debian: expecting the packages of [$1] to be there"; return; }
+    { say "not a Debian system: assuming that the packages of [$1] are installed"; return; }
 
   mkdir -p "$root/build"
   lock "$root/build/.lock"

@@ -20,7 +20,7 @@ function(physinv_refuse_numbers)
   set(metrics ${ARGN})
   list(FILTER metrics INCLUDE REGEX "[/_]metrics\\.cpp$")
   if(metrics)
-    message(FATAL_ERROR "${metrics}: metrics are numbers, and those stand in the "
-      "folder of an experiment, not in what its paper's experiments share")
+    message(FATAL_ERROR "${metrics}: metrics compute numbers, so they must be in the "
+      "folder of an experiment, not in the folder shared by a paper")
   endif()
 endfunction()

@@ -51,7 +51,7 @@ endfunction()
 
 function(physinv_check_sources function target sources rest)
   if(NOT sources OR rest)
-    message(FATAL_ERROR "${function}(${target} ${rest}): what is expected is "
+    message(FATAL_ERROR "${function}(${target} ${rest}): expected "
       "${function}(<name> SOURCES <source>...)")
   endif()
 endfunction()
@@ -77,7 +77,7 @@ function(physinv_add_plugin name)
   include(${PHYSINV_PACKAGE}/physinv-build.cmake)
   if(NOT compiler STREQUAL physinv_compiler)
     message(FATAL_ERROR "physinv_add_plugin(${name}): the suite was built with "
-      "${physinv_compiler}, this is ${compiler}; a plug-in takes the same")
+      "${physinv_compiler}, this is ${compiler}; use the same for a plug-in")
   endif()
   add_library(${name} MODULE ${ARG_SOURCES})
   set_target_properties(${name} PROPERTIES PREFIX "")
@@ -92,8 +92,8 @@ endfunction()
 # of itself stands in one of its own.
 function(physinv_add_contract_tests name)
   if(ARGN OR NOT TARGET ${name})
-    message(FATAL_ERROR "physinv_add_contract_tests(${name} ${ARGN}): what is "
-      "expected is the name of a program or plug-in of physinv")
+    message(FATAL_ERROR "physinv_add_contract_tests(${name} ${ARGN}): "
+      "expected the name of a program or plug-in of physinv")
   endif()
   if(NOT TARGET physinv::contract)
     message(FATAL_ERROR "physinv_add_contract_tests(${name}): libgtest-dev is "

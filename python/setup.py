@@ -25,8 +25,8 @@ def version():
     try:
         text = (ROOT / "CMakeLists.txt").read_text()
     except FileNotFoundError:
-        sys.exit(f"{ROOT} is no checkout of the suite; 'pip install ./python' "
-                 "takes the one around it")
+        sys.exit(f"{ROOT} is not a checkout of the suite; run 'pip install "
+                 "./python' in one")
     return re.search(r"project\(physinv VERSION ([\d.]+)", text)[1]
 
 
@@ -47,8 +47,8 @@ def run(*command):
 class CMakeBuild(build_ext):
     def build_extension(self, ext):
         if self.inplace or getattr(self, "editable_mode", False):
-            sys.exit("the package is not installed as editable; "
-                     f"PYTHONPATH={build_tree()}/python follows its sources")
+            sys.exit("the package has no editable installation; set "
+                     f"PYTHONPATH={build_tree()}/python to follow its sources")
         tree = build_tree()
         if not (tree / "build.ninja").exists():
             run("cmake", "-S", ROOT, "--preset", "release", "-B", tree, "-D",
@@ -58,7 +58,7 @@ class CMakeBuild(build_ext):
         built = tree / "python/physinv" / module.name
         if not built.exists():
             sys.exit(f"{tree} is a build for another Python, without "
-                     f"{module.name}; PHYSINV_BUILD names an empty folder")
+                     f"{module.name}; set PHYSINV_BUILD to an empty folder")
         module.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(built, module)
         run("cmake", "--install", tree, "--component", "programs", "--strip",

@@ -28,15 +28,16 @@ inline py::array numbers(const py::object& argument, std::string_view name) {
       py::module_::import("numpy").attr("ma").attr("MaskedArray");
   if (py::isinstance(argument, masked))
     throw py::type_error(fmt::format(
-        "{} is a masked array; filled(), without a mask, is right", name));
+        "{} is a masked array; expected one without a mask, as from filled()",
+        name));
   auto array = py::array::ensure(argument);
   PyErr_Clear();
   const char kind = array ? array.dtype().kind() : 'U';
   if (kind == 'c')
     throw py::type_error(
-        fmt::format("{} is complex; real numbers are right", name));
+        fmt::format("{} is complex; expected real numbers", name));
   if (std::string_view("biufO").find(kind) == std::string_view::npos)
-    throw py::type_error(fmt::format("{} is no array of numbers", name));
+    throw py::type_error(fmt::format("{} is not an array of numbers", name));
   return array;
 }
 
@@ -49,7 +50,7 @@ Array<T> taken(const py::object& argument, std::string_view name) {
   auto array = Array<T>::ensure(numbers(argument, name));
   if (!array) {
     PyErr_Clear();
-    throw py::type_error(fmt::format("{} is no array of numbers", name));
+    throw py::type_error(fmt::format("{} is not an array of numbers", name));
   }
   return array;
 }
@@ -63,17 +64,16 @@ View<T> view(const Array<T>& array,
   if (array.ndim() != 2 || array.shape(0) != samples ||
       array.shape(1) != features) {
     if (array.ndim() == 1 && array.shape(0) == features)
-      throw py::value_error(fmt::format(
-          "{0} is ({1}), one sample without its axis; {0}[None], (1, {1}), is "
-          "right",
-          name,
-          features));
+      throw py::value_error(
+          fmt::format("{0} is ({1}), a sample without its axis; expected "
+                      "{0}[None], (1, {1})",
+                      name,
+                      features));
     std::string shape;
     for (py::ssize_t i = 0; i < array.ndim(); ++i)
       shape += fmt::format("{}{}", i == 0 ? "" : ", ", array.shape(i));
     throw py::value_error(
-        fmt::format("{} is ({}); (samples, features) = ({}, "
-                    "{}) is right",
+        fmt::format("{} is ({}); expected (samples, features) = ({}, {})",
                     name,
                     shape,
                     samples,

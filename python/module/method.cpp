@@ -29,8 +29,10 @@ Status status_of(const std::string& name) {
     if (name == to_string(s)) return s;
     known.push_back(to_string(s));
   }
-  throw py::value_error(fmt::format(
-      "there is no status '{}'; {} are", name, fmt::join(known, ", ")));
+  throw py::value_error(
+      fmt::format("there is no status '{}'; known statuses: {}",
+                  name,
+                  fmt::join(known, ", ")));
 }
 
 /// One number per problem.
@@ -40,7 +42,7 @@ Batch<double> numbers_of(const py::object& values,
   const auto array = taken<double>(values, name);
   if (array.ndim() != 1 || array.size() != n)
     throw py::value_error(
-        fmt::format("{} has no number for each of {} problems", name, n));
+        fmt::format("{} must have a number for each of {} problems", name, n));
   return Eigen::Map<const Vector<double>>(array.data(), n).transpose();
 }
 
@@ -50,7 +52,7 @@ Batch<double> counts_of(const py::object& values,
                         Index n) {
   Batch<double> counts = numbers_of(values, name, n);
   if (!counts.allFinite() || (counts.array() < 0).any())
-    throw py::value_error(name + " are counts from 0 on");
+    throw py::value_error(name + " must be counts of at least 0");
   return counts;
 }
 
@@ -74,7 +76,8 @@ Outcome outcome_of(py::object result, const Solving& solving) {
     result = result.cast<py::tuple>()[0];
   }
   if (result.is_none())
-    throw py::value_error("it returned None; x, (samples, unknowns), is right");
+    throw py::value_error(
+        "it returned None; expected x with the shape (samples, unknowns)");
   Outcome out;
   out.x = solving.estimates(result);
   out.iterations = solving.counted_iterations();
@@ -98,9 +101,9 @@ Outcome outcome_of(py::object result, const Solving& solving) {
                        solving.n());
       }
     } else {
-      throw py::value_error("a method has no '" + name +
-                            "'; status, iterations, evaluations, message and "
-                            "arrays are known");
+      throw py::value_error("a method cannot return '" + name +
+                            "'; known keys: status, iterations, evaluations, "
+                            "message, arrays");
     }
   }
   if (std::ranges::all_of(out.status, converged) && !out.status.empty())
@@ -212,7 +215,7 @@ Wanted wanted_of(const std::vector<std::string>& names) {
     unsigned bit = 1;
     while (bit < 256 && to_text(static_cast<Needs>(bit)) != name) bit *= 2;
     if (bit == 256)
-      throw py::value_error("there is no ability '" + name + "'; " +
+      throw py::value_error("there is no capability '" + name + "'; " +
                             to_text(static_cast<Needs>(255)) +
                             " and network are");
     all.needs = all.needs | static_cast<Needs>(bit);
@@ -293,11 +296,8 @@ std::vector<std::string> add_method(const std::string& id,
     }
     const Method* there = find_method(*e, id);
     if (there != nullptr && !in_python(there))
-      throw py::value_error(
-          fmt::format("{} has a method {} of the suite's; give yours another "
-                      "name",
-                      e->name,
-                      id));
+      throw py::value_error(fmt::format(
+          "{} already has a method {}; choose another name", e->name, id));
     added.push_back(e->name);
     next.add(with_method(*e, method));
   }

@@ -25,8 +25,8 @@ void check_numpy() {
         "physinv is built with pybind11 " +
         std::to_string(PYBIND11_VERSION_MAJOR) + "." +
         std::to_string(PYBIND11_VERSION_MINOR) +
-        ", which knows NumPy 1, and this is NumPy " + version +
-        "; numpy<2 is right, or a build with pybind11 2.12 or later");
+        ", which supports NumPy 1, but this is NumPy " + version +
+        "; install numpy<2, or build with pybind11 2.12 or later");
 }
 
 /// Loads plug-ins, of PHYSINV_PLUGINS and by file; they find the suite in here.
@@ -35,7 +35,8 @@ void load_plugins(physinv::Arguments flags) {
   Dl_info info{};
   if (dladdr(&here, &info) == 0 ||
       dlopen(info.dli_fname, RTLD_NOW | RTLD_NOLOAD | RTLD_GLOBAL) == nullptr)
-    throw std::runtime_error("plug-ins would not find the suite");
+    throw std::runtime_error(
+        "cannot make the symbols of the suite visible to plug-ins");
   try {
     physinv::load_plugins(flags);
   } catch (const physinv::UsageError& error) {

@@ -92,7 +92,7 @@ PyProblem find_problem(const std::string& name) {
   std::vector<std::string> names;
   for (const auto& e : registry().experiments()) names.push_back(e->name);
   throw py::value_error(
-      fmt::format("there is no problem '{}'; nearest are {}",
+      fmt::format("there is no problem '{}'; nearest: {}",
                   name,
                   fmt::join(nearest_names(names, name), ", ")));
 }

@@ -51,7 +51,7 @@ const CaseRecord& case_named(const Results& results, const std::string& name) {
   for (const CaseRecord& c : results.cases())
     if (c.info.name == name) return c;
   throw py::value_error("there is no case '" + name +
-                        "'; stages() lists those that are there");
+                        "'; stages() lists the existing ones");
 }
 
 const StageRecord& stage_named(const CaseRecord& c, const std::string& name) {

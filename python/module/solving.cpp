@@ -24,7 +24,7 @@ Array<double> tensor(const TensorInfo& info, const double* numbers) {
 }  // namespace
 
 StageRun& Solving::get() const {
-  if (run_ == nullptr) throw std::runtime_error("this run has ended");
+  if (run_ == nullptr) throw std::runtime_error("this run has already ended");
   return *run_;
 }
 
@@ -46,8 +46,8 @@ py::dict Solving::network() const {
   const NetworkRole& role = setting.predictor;
   if (role.inputs.empty())
     throw py::value_error(
-        "a method that wants the experiment's network says so: needs=(\"vjp\", "
-        "\"network\")");
+        "a method needs needs=(\"vjp\", \"network\") to use the experiment's "
+        "network");
   NetworkModel<double> model(
       role, oracle().shape(), oracle().shape().unknowns, get().threads);
   model.initialize(get().network_init);
@@ -111,13 +111,14 @@ void Solving::accept(Index example,
         fmt::format("example {} of {} from 0 on", example, n()));
   if (iteration < 0 || iteration > iterations())
     throw py::value_error(fmt::format(
-        "iteration {} of {}, which are the budget", iteration, iterations()));
+        "iteration {} is not in the budget of {}", iteration, iterations()));
   const auto at = taken<double>(x, "x");
   const auto lost = taken<double>(loss, "loss");
-  if (lost.size() != 1) throw py::value_error("loss is one number");
+  if (lost.size() != 1) throw py::value_error("loss must be one number");
   if (at.ndim() != 1 || at.shape(0) != oracle().shape().unknowns)
-    throw py::value_error(fmt::format("x has the {} unknowns of an example",
-                                      oracle().shape().unknowns));
+    throw py::value_error(
+        fmt::format("x must have the {} unknowns of an example",
+                    oracle().shape().unknowns));
   told_ = accepted_ = true;
   get().probe.accept(example, iteration, at.data(), *lost.data());
   double& reached = accepted_iterations_(example);
@@ -156,7 +157,7 @@ std::vector<Index> Solving::problems(const py::object& active) const {
   const bool indices = kind == 'i' || kind == 'u' || given.size() == 0;
   if (given.ndim() != 1 || !(mask || indices))
     throw py::type_error(fmt::format(
-        "active is neither a list of problems from 0 on nor one of {} bools",
+        "active must be a list of problem indices from 0 on or of {} bools",
         n()));
   const Array<Index> list(given);
   std::vector<Index> chosen;
@@ -172,8 +173,8 @@ std::vector<Index> Solving::problems(const py::object& active) const {
 void Solving::finish() {
   if (!told_)
     throw std::runtime_error(
-        "the method called neither run.proceed nor run.accept, so that there "
-        "is no curve of it");
+        "the method called neither run.proceed nor run.accept, so it has no "
+        "curve");
   if (accepted_) get().probe.finish();
 }
 
@@ -239,10 +240,9 @@ void define_curve(Run& run) {
   run.def("proceed",
           &Solving::proceed,
           py::arg("x"),
-          "proceed($self, x)\n--\n\n"
-          "while run.proceed(x): counts an iteration, measures x (n, unknowns) "
-          "while the\nclock stands still, and is False when the budget is "
-          "spent.")
+          "proceed($self, x)\n--\n\nwhile run.proceed(x): counts an iteration, "
+          "measures x (n, unknowns) while the\nclock is stopped, and is False "
+          "when the budget is spent.")
       .def("accept",
            &Solving::accept,
            py::arg("example"),

@@ -89,7 +89,7 @@ std::vector<std::pair<std::string, std::string>> add_problem(
   const auto before = registry().find(full);
   if (before && !words_of_problems().contains(full))
     throw py::value_error(fmt::format(
-        "the suite has an experiment {}; give yours another name", full));
+        "the suite already has an experiment {}; choose another name", full));
   const auto calls = functions_of(full, functions);
   o.shape = calls->shape;
   o.problem = recipe_of(calls,

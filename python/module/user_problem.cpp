@@ -101,7 +101,7 @@ class Body : public Problem<T> {
       put<double>(both[0], "x", {}, sample.x);
       put<double>(both[1], "given", {}, sample.given);
       if (!sample.x.allFinite() || !sample.given.allFinite())
-        throw py::value_error("it drew what is not finite");
+        throw py::value_error("it drew values that are not finite");
     });
     drawn_ = true;
   }
@@ -112,8 +112,8 @@ class Body : public Problem<T> {
       put<T>(of_->forward(seen.x, seen.given), "its y", seen.lost, y);
       if (std::exchange(drawn_, false) && !y.allFinite())
         throw py::value_error(
-            "its y is not finite for what sample draws, so that there is "
-            "nothing to solve; sample is to draw where it is");
+            "its y is not finite for drawn samples, so there is nothing to "
+            "solve; sample must draw where y is finite");
     });
   }
 
@@ -176,7 +176,7 @@ class VjpPart : public Vjp<T> {
   py::tuple asked(const Array<double>& x, const Array<double>& given) const {
     const py::object both = of_->vjp(x, given);
     if (!py::isinstance<py::tuple>(both) || py::len(both) != 2)
-      throw py::value_error("it is to return y and a function, the pullback");
+      throw py::value_error("it must return y and a function, the pullback");
     return both.cast<py::tuple>();
   }
 
@@ -233,12 +233,11 @@ class JacobianPart : public Jacobian<T> {
       const auto all = taken<double>(of_->jacobian(seen.x, seen.given), "it");
       if (all.ndim() != 3 || all.shape(0) != j.cols() ||
           all.shape(1) != s.observations || all.shape(2) != s.unknowns)
-        throw py::value_error(
-            fmt::format("(samples, observations, unknowns) = ({}, {}, {}) is "
-                        "right",
-                        j.cols(),
-                        s.observations,
-                        s.unknowns));
+        throw py::value_error(fmt::format(
+            "expected (samples, observations, unknowns) = ({}, {}, {})",
+            j.cols(),
+            s.observations,
+            s.unknowns));
       // A column is a matrix by columns; NumPy's are by rows.
       const View<double> by_rows(all.data(), j.rows(), j.cols());
       for (Index i = 0; i < j.cols(); ++i)

@@ -24,7 +24,7 @@ std::string words_of(const py::error_already_set& error) {
   try {
     return fmt::format("{}: {}", type, plain_text(py::str(error.value())));
   } catch (const py::error_already_set&) {
-    return type + ", whose text cannot be had";
+    return type + " without a readable message";
   }
 }
 

@@ -128,8 +128,8 @@ def _count(name, value, least):
     except TypeError:
         count = None
     if count is None or not least <= count < 2 ** 63:
-        raise ValueError(f"{name}={value!r}; a whole number from {least} on is "
-                         "right")
+        raise ValueError(f"{name}={value!r}; expected a whole number of "
+                         f"at least {least}")
     return count
 
 

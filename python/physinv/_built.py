@@ -19,13 +19,13 @@ def core():
     this = f"this is Python {own}"
     if not built:
         raise ImportError(
-            f"{here} has no extension module _core, and {this}; a build with "
-            "python3-dev, python3-numpy and pybind11-dev makes it")
+            f"{here} has no extension module _core for {this}; build it with "
+            "python3-dev, python3-numpy and pybind11-dev installed")
     versions = [_version(name) for name in built]
     raise ImportError(
-        f"physinv is built for Python {' and '.join(versions)}, and {this} "
-        f"({sys.executable}); {' or '.join('python' + v for v in versions)} is "
-        "right, or a build with this one")
+        f"physinv is built for Python {' and '.join(versions)}, but {this} "
+        f"({sys.executable}); use {' or '.join('python' + v for v in versions)}, "
+        "or build for this one")
 
 
 def _version(name):

@@ -61,7 +61,7 @@ def _forward(functions, x, given):
     expected = (len(x), functions.shape[1])
     if y.shape != expected:
         raise Wrong(f"forward returned {y.shape} for {len(x)} samples; "
-                    f"{expected} is right")
+                    f"expected {expected}")
     return y
 
 
@@ -94,16 +94,16 @@ def _sample_is_of_its_seed(functions):
     for name, a, b in zip(("x", "given"), first, again):
         if a.tobytes() != b.tobytes():
             raise Wrong(f"sample(5, 1) drew another {name} the second time; it "
-                        "is to draw from seed alone, such as with "
+                        "must draw from seed alone, such as with "
                         "numpy.random.default_rng(seed)")
     if first[0].tobytes() == other[0].tobytes() and \
             first[1].tobytes() == other[1].tobytes():
-        raise Wrong("sample draws the same of seeds 5 and 6")
+        raise Wrong("sample draws the same for seeds 5 and 6")
     x, given = functions.sample(5, 3)
     expected = (3, functions.shape[0]), (3, functions.shape[2])
     if (x.shape, given.shape) != expected:
         raise Wrong(f"sample(5, 3) drew {x.shape} and {given.shape}; "
-                    f"{expected[0]} and {expected[1]} are right")
+                    f"expected {expected[0]} and {expected[1]}")
 
 
 def _forward_is_finite(functions):
@@ -119,8 +119,8 @@ def _forward_gives_the_same_bits_twice(functions):
     x, given = _drawn(functions)
     if _forward(functions, x, given).tobytes() != \
             _forward(functions, x, given).tobytes():
-        raise Wrong("forward gave other numbers for the same arguments; results "
-                    "would not be the same again")
+        raise Wrong("forward gave other numbers for the same arguments, so results "
+                    "would not be reproducible")
 
 
 def _forward_leaves_its_arguments_alone(functions):
@@ -129,7 +129,7 @@ def _forward_leaves_its_arguments_alone(functions):
     functions.forward(x, given)
     for name, a, b in zip(("x", "given"), before, (x, given)):
         if a.tobytes() != b.tobytes():
-            raise Wrong(f"forward writes into {name}; a copy is right")
+            raise Wrong(f"forward writes into {name}; it must change a copy")
 
 
 def _a_batch_gives_what_its_samples_give(functions):
@@ -148,7 +148,7 @@ def _vjp_returns_the_y_of_forward(functions):
     y = _forward(functions, x, given)
     there, _ = _vjp(functions, x, given, np.zeros_like(y))
     if there.shape != y.shape:
-        raise Wrong(f"its y is {there.shape}; {y.shape} is right")
+        raise Wrong(f"its y is {there.shape}; expected {y.shape}")
     far = _far(there, y, _ROUNDING)
     if len(far):
         raise Wrong(_first(far, there, y, ("vjp", "forward")))
@@ -179,11 +179,11 @@ def _compare(functions, derivative, name):
         far = np.flatnonzero(
             ~(np.abs(a - b).max(1) <= _TOLERANCE * scale + 1e-8))
         if len(far):
-            raise Wrong(f"{name} by unknown {k} is not what differences say: "
+            raise Wrong(f"{name} by unknown {k} differs from differences: "
                         + _first(far, a, b, (name, "differences")))
     if not checked:
-        raise Wrong("forward has no derivative that differences could tell, "
-                    "in no sample")
+        raise Wrong("differences could not measure the derivative of forward "
+                    "in any sample")
 
 
 def _vjp_agrees_with_differences(functions):
@@ -194,8 +194,8 @@ def _vjp_agrees_with_differences(functions):
     def derivative(x, given, x_dot):
         _, x_bar = _vjp(functions, x, given, y_bar)
         if x_bar.shape != x.shape:
-            raise Wrong(f"its pullback returned {x_bar.shape}; {x.shape} is "
-                        "right")
+            raise Wrong(f"its pullback returned {x_bar.shape}; expected "
+                        f"{x.shape}")
         return (x_bar * x_dot).sum(1, keepdims=True)
 
     class Projected:
@@ -225,8 +225,8 @@ def _jacobian_agrees_with_differences(functions):
         j = np.asarray(functions.jacobian(x.copy(), given.copy()))
         expected = (len(x), functions.shape[1], functions.shape[0])
         if j.shape != expected:
-            raise Wrong(f"it is {j.shape}; (samples, observations, unknowns) = "
-                        f"{expected} is right")
+            raise Wrong(f"it is {j.shape}; expected (samples, observations, "
+                        f"unknowns) = {expected}")
         return np.einsum("nou,nu->no", j, x_dot)
 
     _compare(functions, derivative, "jacobian")
@@ -266,7 +266,7 @@ def _inverse_lowers_the_loss(functions):
     guess = np.repeat(functions.start[None], len(x), 0)
     found = np.asarray(functions.inverse(y.copy(), given.copy(), guess.copy()))
     if found.shape != x.shape:
-        raise Wrong(f"it returned {found.shape}; {x.shape} is right")
+        raise Wrong(f"it returned {found.shape}; expected {x.shape}")
     before, after = (((_forward(functions, at, given) - y) ** 2).sum(1)
                      for at in (guess, found))
     high = np.flatnonzero(~(after <= before))

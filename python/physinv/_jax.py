@@ -15,7 +15,7 @@ def _called(function, features, x, *others):
 def _refuse(name, array):
     dtype = np.dtype(getattr(array, "dtype", object))
     if dtype not in (np.float32, np.float64):
-        raise TypeError(f"{name} is {dtype}; float32 or float64 is right")
+        raise TypeError(f"{name} is {dtype}; expected float32 or float64")
 
 
 def differentiable(problem):
@@ -36,8 +36,8 @@ def differentiable(problem):
         for."""
         if given.perturbed:
             raise TypeError(
-                "a derivative by given is asked for, and there are derivatives "
-                "by x alone; jax.lax.stop_gradient(given) is right")
+                "a derivative by given was requested, but only derivatives "
+                "by x exist; pass jax.lax.stop_gradient(given)")
         return with_given(x.value, given.value), (x.value, given.value)
 
     def backward(point, y_bar):

@@ -90,7 +90,7 @@ def _put_builtin(walk, value):
         walk.libraries.add(top)
         walk.say(top, name)
     elif not _key_code.put_binary(walk, sys.modules.get(name)):
-        walk.refuse(value, "the file that it stands in is not known")
+        walk.refuse(value, "its file is unknown")
 
 
 def _native_base(cls):
@@ -179,7 +179,7 @@ def _put_reduced(walk, value):
     try:
         parts = reduce(value) if reduce else value.__reduce_ex__(4)
     except Exception as error:
-        walk.refuse(value, f"it has no lasting text ({error})")
+        walk.refuse(value, f"it has no stable text ({error})")
     if isinstance(parts, str):
         _put_named(walk, value, parts)
         return
@@ -204,7 +204,7 @@ def _put_named(walk, value, name):
         walk.say("name", name)  # of a type variable
         return
     if home is None:
-        walk.refuse(value, "the module that it stands in is not known")
+        walk.refuse(value, "its module is unknown")
     top = _libraries.of_module(home)
     walk.say("global", home if top else "", name)
     if top:

@@ -52,7 +52,7 @@ def _value_key(value, name):
     try:
         return source_key(value, name)[0]
     except Refused as error:
-        raise TypeError(f"the option {name} has no lasting text that could "
+        raise TypeError(f"the option {name} has no stable text that could "
                         f"enter the key: {error}") from None
 
 
@@ -82,8 +82,8 @@ def _words_of_source(what, value):
     try:
         source, libraries = source_key(value, _name_of(value))
     except Refused as error:
-        raise ValueError(f"the key of the {what} cannot name all that "
-                         f"its numbers come from: {error}") from None
+        raise ValueError(f"the key of the {what} cannot cover all that "
+                         f"its numbers depend on: {error}") from None
     own = {_libraries.PYTHON, _libraries.PHYSINV}
     words = [("source", source), ("python", "%d.%d" % sys.version_info[:2]),
              ("libraries", _libraries.versions((libraries | {"numpy"}) - own))]
@@ -98,30 +98,30 @@ def _name_of(function):
 
 def _check(name, experiments, needs, iterations, options):
     if not isinstance(name, str) or not re.fullmatch("[a-z0-9_-]{1,100}", name):
-        raise ValueError("a method's name is in [a-z0-9_-], at most 100 of "
-                         f"them, and {name!r} is not")
+        raise ValueError("a method's name must have at most 100 characters of "
+                         f"[a-z0-9_-]; {name!r} does not")
     if not isinstance(experiments, str):
-        raise ValueError(f"experiments={experiments!r} of the method {name}; a "
-                         "pattern such as 'jpo/*' is right")
+        raise ValueError(f"experiments={experiments!r} of the method {name}; "
+                         "expected a pattern such as 'jpo/*'")
     if not isinstance(needs, (str, list, tuple, set)) or not all(
             isinstance(one, str) for one in needs):
-        raise ValueError(f"needs={needs!r} of the method {name}; names such as "
-                         "'vjp' are right")
+        raise ValueError(f"needs={needs!r} of the method {name}; expected names "
+                         "such as 'vjp'")
     try:
         budget = operator.index(iterations)
     except TypeError:
         budget = None
     if budget is None or isinstance(iterations, (bool, np.bool_)) or \
             not 1 <= budget <= _LARGEST_BUDGET:
-        raise ValueError(f"iterations={iterations!r} of the method {name}; a "
-                         f"whole number from 1 to {_LARGEST_BUDGET} is right")
+        raise ValueError(f"iterations={iterations!r} of the method {name}; "
+                         f"expected a whole number from 1 to {_LARGEST_BUDGET}")
     for option in options:
         if not option.isidentifier():
-            raise ValueError("an option's name is an identifier, and "
+            raise ValueError("an option's name must be an identifier; "
                              f"{option!r} of the method {name} is not")
         if option in _OWN_WORDS:
             raise ValueError(f"the method {name} has an option {option}, a "
-                             "word that the record has already; give it "
+                             "key that the record already has; choose "
                              "another name")
     return budget
 
@@ -137,7 +137,7 @@ def _check_callable(name, function):
     try:
         signature.bind(None)
     except TypeError as error:
-        raise ValueError(f"the method {name} is called with one argument, the "
+        raise ValueError(f"the method {name} must accept one argument, the "
                          f"run: {error}") from None
 
 

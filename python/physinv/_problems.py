@@ -52,15 +52,15 @@ class Problem:
         super().__init_subclass__(**others)
         if autodiff not in _FRAMEWORKS:
             raise ValueError(f"autodiff={autodiff!r} of {cls.__name__}; "
-                             "'torch' or 'jax' is right")
+                             "expected 'torch' or 'jax'")
         if autodiff is not None:
             cls.autodiff = autodiff
 
     def sample(self, seed, n):
-        raise NotImplementedError("a problem has sample(seed, n)")
+        raise NotImplementedError("a problem must define sample(seed, n)")
 
     def forward(self, x, given):
-        raise NotImplementedError("a problem has forward(x, given)")
+        raise NotImplementedError("a problem must define forward(x, given)")
 
 
 class Functions:
@@ -122,8 +122,8 @@ class Functions:
 
 def _expect(name, array, shape):
     if array.shape != shape:
-        raise ValueError(f"{name} is {_text(array.shape)}; {_text(shape)} is "
-                         "right")
+        raise ValueError(f"{name} is {_text(array.shape)}; expected "
+                         f"{_text(shape)}")
 
 
 def _text(shape):
@@ -132,12 +132,12 @@ def _text(shape):
 
 def _start_of(problem):
     if problem.start is None:
-        raise ValueError("a problem has a start: where solvers begin, one "
+        raise ValueError("a problem must define start, where solvers begin: one "
                          "number for each unknown")
     start = np.array(problem.start, float)
     if start.ndim != 1 or not start.size or not np.isfinite(start).all():
-        raise ValueError(f"start={problem.start!r}; a finite number for each "
-                         "unknown is right")
+        raise ValueError(f"start={problem.start!r}; expected a finite number "
+                         "for each unknown")
     return start
 
 
@@ -146,7 +146,7 @@ def as_problem(problem):
     if inspect.isclass(problem) and issubclass(problem, Problem):
         problem = problem()
     if not isinstance(problem, Problem):
-        raise TypeError(f"{problem!r} is no physinv.Problem")
+        raise TypeError(f"{problem!r} is not a physinv.Problem")
     return problem
 
 
@@ -159,8 +159,8 @@ def skipped(name):
     """Methods that the experiment of a Problem, "matrix/decay", leaves out, each
     with what is missing: {"sip": "no inverse"}. ValueError for another one."""
     if name not in _registered:
-        raise ValueError(f"{name!r} is no experiment from Python; "
-                         f"{', '.join(_registered) or 'there are none'}")
+        raise ValueError(f"{name!r} is not an experiment from Python; known "
+                         f"experiments: {', '.join(_registered) or 'none'}")
     return dict(_registered[name])
 
 
@@ -170,25 +170,25 @@ def _count(name, key, value):
     except TypeError:
         count = None
     if count is None or isinstance(value, bool) or not 1 <= count <= 10 ** 9:
-        raise ValueError(f"{key}={value!r} of the experiment {name}; a whole "
-                         "number from 1 on is right")
+        raise ValueError(f"{key}={value!r} of the experiment {name}; expected "
+                         "a whole number of at least 1")
     return count
 
 
 def _settings(name, given):
     if not isinstance(name, str) or not re.fullmatch("[a-z0-9_-]{1,100}", name):
-        raise ValueError("an experiment's name is in [a-z0-9_-], at most 100 "
-                         f"of them, and {name!r} is not")
+        raise ValueError("an experiment's name must have at most 100 "
+                         f"characters of [a-z0-9_-]; {name!r} does not")
     hidden = given["hidden"]
     if isinstance(hidden, str) or not np.iterable(hidden):
-        raise ValueError(f"hidden={hidden!r} of the experiment {name}; the "
-                         "features of each layer, such as (64, 64), are right")
+        raise ValueError(f"hidden={hidden!r} of the experiment {name}; expected "
+                         "the features of each layer, such as (64, 64)")
     counts = {key: _count(name, key, given[key])
               for key in ("n", "iterations", "updates", "batch")}
     gtol = float(given["gtol"])
     if not gtol > 0:
-        raise ValueError(f"gtol={gtol} of the experiment {name}; a positive "
-                         "number is right")
+        raise ValueError(f"gtol={gtol} of the experiment {name}; expected a "
+                         "positive number")
     title = given["title"] or name.replace("-", " ").capitalize()
     return dict(counts, gtol=gtol, title=str(title),
                 hidden=[_count(name, "hidden", one) for one in hidden])

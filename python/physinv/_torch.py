@@ -38,17 +38,17 @@ class _Pullback(torch.autograd.Function):
     @staticmethod
     def backward(ctx, x_dot):
         raise NotImplementedError(
-            "physinv.torch has first derivatives alone, and this asks for "
-            "second ones; Problem.hessian has those of the loss where it is "
+            "physinv.torch only has first derivatives, but second ones were "
+            "requested; Problem.hessian has those of the loss if 'hessian' is "
             "among the problem's names")
 
 
 def _checked(name, value):
     if not isinstance(value, torch.Tensor):
-        raise TypeError(f"{name} is {type(value).__name__}; a tensor of "
-                        "float32 or float64 is right")
+        raise TypeError(f"{name} is {type(value).__name__}; expected a tensor "
+                        "of float32 or float64")
     if value.dtype not in _PRECISIONS:
-        raise TypeError(f"{name} is {value.dtype}; float32 or float64 is right")
+        raise TypeError(f"{name} is {value.dtype}; expected float32 or float64")
     return value
 
 
@@ -62,8 +62,8 @@ def differentiable(problem):
         if given is not None:
             if _checked("given", given).requires_grad and torch.is_grad_enabled():
                 raise TypeError(
-                    "given requires a gradient, and there are derivatives by x "
-                    "alone; given.detach() is right")
+                    "given requires a gradient, but only derivatives by x "
+                    "exist; pass given.detach()")
             given = _array(given.to(x.dtype))
         return _Forward.apply(x, given, problem)
 

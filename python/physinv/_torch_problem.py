@@ -14,8 +14,8 @@ def _tensor(array):
 
 def _checked(y):
     if not isinstance(y, torch.Tensor):
-        raise TypeError(f"forward returned {type(y).__name__}; a tensor is "
-                        "right")
+        raise TypeError(f"forward returned {type(y).__name__}; expected a "
+                        "tensor")
     return y
 
 

@@ -127,9 +127,9 @@ class Pendulum(unittest.TestCase):
     def test_5_the_stock_program_says_what_it_cannot(self):
         bench = PREFIX + "/bin/physinv-bench"
         self.run_smoke()
-        self.assertIn("does not know pendulum",
+        self.assertIn("does not have pendulum",
                       run(bench, "verify", RESULTS, status=10))
-        self.assertIn("does not know pendulum",
+        self.assertIn("does not have pendulum",
                       run(bench, "report", RESULTS, status=3))
 
     def test_6_a_plug_in_does_the_same(self):
@@ -211,7 +211,7 @@ except ValueError as e: print(e)
         at = code.index(mark) + len(mark)
         with open(WORK + "/older.so", "wb") as f:
             f.write(code[:at] + b"0" * 16 + code[at + 16:])
-        refused(WORK + "/older.so", "was built on build 0000000000000000")
+        refused(WORK + "/older.so", "was built with build 0000000000000000")
         shutil.copy(plugin, WORK + "/twice.so")
         os.environ["PHYSINV_PLUGINS"] = plugin
         try:

@@ -159,7 +159,7 @@ file(CHMOD ${work}/fake/mmdebstrap PERMISSIONS OWNER_READ OWNER_EXECUTE)
 execute_process(
   COMMAND bash -c "cd '${checkout}' && PATH='${work}/fake':$PATH ./check --arm64"
   ERROR_VARIABLE said RESULT_VARIABLE status)
-if(NOT status EQUAL 9 OR NOT said MATCHES "fake --mode=chrootless .*cannot be had")
+if(NOT status EQUAL 9 OR NOT said MATCHES "fake --mode=chrootless .*cannot unpack the libraries")
   message(SEND_ERROR "unpacking for ARM: ${status}\n${said}")
 endif()
 

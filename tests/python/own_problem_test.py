@@ -234,13 +234,13 @@ class OwnProblems(unittest.TestCase):
             return y[:, :3], pullback
         row, _ = self.failing("short", vjp=vjp)
         self.assertEqual(row["message"],
-                         "vjp of matrix/short: its y is (4, 3); (samples, "
-                         "features) = (4, 6) is right")
+                         "vjp of matrix/short: its y is (4, 3); expected "
+                         "(samples, features) = (4, 6)")
 
         def alone(self, x, given):
             return Sloped.vjp(self, x, given)[0]
         row, _ = self.failing("alone", vjp=alone)
-        self.assertIn("to return y and a function", row["message"])
+        self.assertIn("must return y and a function", row["message"])
 
         def wide(self, x, given):
             return Sloped.vjp(self, x, given)[0], lambda y_bar: y_bar
@@ -271,8 +271,8 @@ class OwnProblems(unittest.TestCase):
             return np.where(given > 1, np.nan, Sloped.forward(self, x, given))
         row, _ = self.failing("holes", forward=forward)
         self.assertEqual(row["stop"], "failed")
-        self.assertIn("forward of matrix/holes: its y is not finite for what "
-                      "sample draws", row["message"])
+        self.assertIn("forward of matrix/holes: its y is not finite for "
+                      "drawn samples", row["message"])
 
         def sample(self, seed, n):
             raise KeyError("no file")
@@ -347,23 +347,23 @@ class OwnProblems(unittest.TestCase):
         def refused(words, problem=Sloped, name="refused", **settings):
             with self.assertRaisesRegex((ValueError, TypeError), words):
                 physinv.experiment(name, **settings)(problem)
-        refused("in .a-z0-9_-.", name="No Name")
-        refused("the suite has an experiment matrix/billiards", name="billiards")
-        refused("is no physinv.Problem", problem=3)
-        refused("a whole number from 1 on", n=0)
-        refused("a whole number from 1 on", batch=1.5)
+        refused("must have at most 100 characters", name="No Name")
+        refused("already has an experiment matrix/billiards", name="billiards")
+        refused("is not a physinv.Problem", problem=3)
+        refused("a whole number of at least 1", n=0)
+        refused("a whole number of at least 1", batch=1.5)
         refused("a positive number", gtol=0)
         refused("such as .64, 64.", hidden=3)
-        refused("a problem has a start", type("P", (Sloped,), dict(start=None)))
-        refused("x of sample is .1, 2.; .1, 3. is right",
+        refused("a problem must define start", type("P", (Sloped,), dict(start=None)))
+        refused("x of sample is .1, 2.; expected .1, 3.",
                 type("P", (Sloped,), dict(start=[1, 2, 3])))
-        refused("what forward returns is .6.; .1, observations. is right",
+        refused("what forward returns is .6.; expected .1, observations.",
                 type("P", (Sloped,), dict(
                     forward=lambda self, x, given: TIMES)))
-        refused("cannot name all that .* LOCK", type("P", (Sloped,), dict(
+        refused("cannot cover all that .* LOCK", type("P", (Sloped,), dict(
             forward=lambda self, x, given: (LOCK, Plain.forward(
                 self, x, given))[1])))
-        with self.assertRaisesRegex(ValueError, "'torch' or 'jax' is right"):
+        with self.assertRaisesRegex(ValueError, "expected 'torch' or 'jax'"):
             type("P", (Sloped,), {}, autodiff="numpy")
         self.assertNotIn("matrix/refused", physinv.problems())
 
@@ -382,7 +382,7 @@ class Conformance(unittest.TestCase):
                 Full, name)(self, x, given)
         wrong = broken(jacobian=scaled("jacobian", 1.001))
         self.assertRegex(wrong["vjp agrees with differences"],
-                         "by unknown 0 is not what differences say: in 1.* of ")
+                         "by unknown 0 differs from differences: in 1.* of ")
         self.assertIn("jacobian agrees with differences", wrong)
         self.assertNotIn("vjp and jvp are adjoint", wrong)
         wrong = broken(jvp=lambda self, x, given, x_dot: x_dot[:, :1] * x[:, 1:]
@@ -401,12 +401,12 @@ class Conformance(unittest.TestCase):
             self, seed + next(count), n))
         self.assertIn("from seed alone", wrong["sample is of its seed"])
         wrong = broken(sample=lambda self, seed, n: Plain.sample(self, 1, n))
-        self.assertIn("the same of seeds 5 and 6",
+        self.assertIn("the same for seeds 5 and 6",
                       wrong["sample is of its seed"])
         wrong = broken(inverse=lambda self, y, given, guess: guess + 9)
         self.assertIn("further from y", wrong["inverse lowers the loss"])
         wrong = broken(start=None)
-        self.assertIn("has a start", wrong["definition"])
+        self.assertIn("must define start", wrong["definition"])
 
         def writes(self, x, given):
             x[:, 0] *= 2
@@ -460,7 +460,7 @@ class Torch(unittest.TestCase):
     def test_what_is_no_tensor_has_words(self):
         kind = type("P", (self.problem(),),
                     dict(forward=lambda self, x, given: x.numpy()))
-        with self.assertRaisesRegex(TypeError, "a tensor is right"):
+        with self.assertRaisesRegex(TypeError, "expected a tensor"):
             physinv.experiment("no-tensor")(kind)
 
 

@@ -100,7 +100,7 @@ class Pip(unittest.TestCase):
                   "except FileNotFoundError as error: print(error)",
                   PYTHONPATH=apart + "/python/lib/physinv/python", PATH="/none")
         self.assertIn("<physinv problem jpo/robotic-arm", out)
-        self.assertIn("PHYSINV_BENCH names it", out)
+        self.assertIn("set PHYSINV_BENCH", out)
 
     def test_sources_stay_as_they_were(self):
         self.assertEqual(self.added, set())
@@ -108,7 +108,7 @@ class Pip(unittest.TestCase):
     def test_what_cannot_be_is_said(self):
         self.assertIn("PYTHONPATH=", pip("-e", SOURCES + "/python", status=1))
         shutil.copytree(SOURCES + "/python", WORK + "/apart/python")
-        self.assertIn("is no checkout of the suite",
+        self.assertIn("is not a checkout of the suite",
                       pip(WORK + "/apart/python", status=1))
 
 

@@ -283,7 +283,7 @@ class Words(unittest.TestCase):
             text.encode()
         for bad in (threading.Lock(), sys.stdout, (x for x in "a"),
                     np.random.default_rng(0), [threading.Lock()]):
-            with self.assertRaisesRegex(TypeError, "the option rate has no la"):
+            with self.assertRaisesRegex(TypeError, "the option rate has no st"):
                 self.words(rate=bad)
 
     def test_versions_are_words(self):
