@@ -59,7 +59,7 @@ struct RunFlags {
          &campaign.threads},
         {"--share-cores",
          "once no case waits, give free cores to running cases: a stage that "
-         "saves checkpoints goes on in more threads; results do not change",
+         "saves checkpoints continues in more threads; results do not change",
          &campaign.share_cores},
         {"--time-budget",
          "wall time of the run, such as 10m: all methods on one seed first, "

@@ -302,7 +302,7 @@ class Campaign {
       find_state(
           i,
           positions_[w],
-          fmt::format("going on with {{}} {{}} from iteration {{}} in {} "
+          fmt::format("resuming {{}} {{}} from iteration {{}} in {} "
                       "threads",
                       threads));
       submit(workers, w, take_stored(i), threads);
