@@ -299,12 +299,11 @@ class Campaign {
     for (const std::size_t w : std::exchange(left_, {})) {
       const std::size_t i = running_[w];
       const int threads = shares_.threads_for(w, now().wall);
-      find_state(
-          i,
-          positions_[w],
-          fmt::format("resuming {{}} {{}} from iteration {{}} in {} "
-                      "threads",
-                      threads));
+      find_state(i,
+                 positions_[w],
+                 fmt::format("resuming {{}} {{}} from iteration {{}} in {} "
+                             "threads",
+                             threads));
       submit(workers, w, take_stored(i), threads);
     }
   }
