@@ -97,7 +97,7 @@ class Pendulum(unittest.TestCase):
         with open(lists) as f:
             before = f.read()
         for name, why in (("drift.cpp", "no stage depends on it"),
-                          ("optimizers/bfgs.cpp", "the suite has a source")):
+                          ("optimizers/bfgs.cpp", "already has a source")):
             os.makedirs(os.path.dirname(f"{PROJECT}/{name}"), exist_ok=True)
             edit(name, "")
             with open(lists, "w") as f:

@@ -333,7 +333,7 @@ TEST_F(StoreTest, ResultsFromBeforeTheStatusFtolAreRead) {
   EXPECT_NO_THROW(earlier(a_));
   const CaseInfo more = sample_case("bfgs", 8, 0);  // one of them is ftol
   EXPECT_TRUE(contains(message_of<StoreError>([&] { earlier(more); }),
-                       "says otherwise of jpo/sample"));
+                       "repetitions about jpo/sample"));
 }
 
 TEST_F(StoreTest, FileInsteadOfADirectory) {
