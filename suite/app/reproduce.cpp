@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -13,7 +14,9 @@
 #include "suite/app/options.h"
 #include "suite/app/published_campaign.h"
 #include "suite/app/sections.h"
+#include "suite/core/clock.h"
 #include "suite/harness/columns.h"
+#include "suite/harness/keys.h"
 #include "suite/harness/progress.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/select.h"
@@ -24,11 +27,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
 struct ReproduceFlags {
   std::vector<std::string> names;
   std::string paper, campaigns = "reports/campaigns", out = "results/reproduce";
+  std::string budget;  ///< of all campaigns
   int jobs = 0;
-  bool dry = false;
+  bool share_cores = false, dry = false;
 };
 
 /// A published campaign as it is run again.
@@ -36,11 +42,12 @@ struct Again {
   std::string name;
   /// Names of cases by the profile that they were run for.
   std::map<std::string, std::vector<std::string>> cases;
-  std::vector<std::string> sets;  ///< --set of the campaign
-  std::string seeds;              ///< of all cases: "0,1,2"
-  double cpu_seconds = 0;         ///< of solving, when it was published
-  std::size_t unknown = 0;        ///< cases that are not registered now
-  std::vector<ClaimKey> decides;  ///< what it decides of all campaigns
+  std::vector<std::string> sets;          ///< --set of the campaign
+  std::string seeds;                      ///< of all cases: "0,1,2"
+  double cpu_seconds = 0;                 ///< of solving, when it was published
+  std::size_t unknown = 0;                ///< cases that are not registered now
+  std::size_t stages = 0, same_keys = 0;  ///< stored; of today's sources
+  std::vector<ClaimKey> decides;          ///< what it decides of all campaigns
 
   std::size_t size() const {  ///< cases
     std::size_t all = 0;
@@ -54,15 +61,42 @@ std::string paper_of(const std::string& experiment) {
   return e ? e->citation.paper : "";
 }
 
-/// Leaves out cases that no profile has by now.
-void drop_unknown(Again& again) {
+using CasesByName = std::map<std::string, Case>;
+
+CasesByName registered_cases(const Again& again, const std::string& profile) {
+  CasesByName cases;
+  for (Case& c :
+       registry().expand(profile, parse_overrides(again.sets, again.seeds))) {
+    std::string name = c.info.name;
+    cases.emplace(std::move(name), std::move(c));
+  }
+  return cases;
+}
+
+/// Counts the stages that a run of this program would store under the same key.
+void count_keys(const CaseRecord& stored,
+                const Case& today,
+                const Numerics& numerics,
+                Again& again) {
+  const auto keys = content_keys(today, stored.data.hash, numerics);
+  for (const StageRecord& s : stored.stages) {
+    const auto position = static_cast<std::size_t>(s.position);
+    if (position < keys.size() && keys[position] == s.key) ++again.same_keys;
+  }
+}
+
+/// Leaves out cases that no profile has by now, and counts keys of the others.
+void match_with_registered(const Results& results, Again& again) {
+  std::map<std::string_view, const CaseRecord*> stored;
+  for (const CaseRecord& c : results.cases()) stored[c.info.name] = &c;
+  const Numerics numerics = remembered_numerics();
   for (auto& [profile, names] : again.cases) {
-    std::set<std::string> known;
-    for (const Case& c :
-         registry().expand(profile, parse_overrides(again.sets, again.seeds)))
-      known.insert(c.info.name);
-    again.unknown += std::erase_if(
-        names, [&](const std::string& name) { return !known.contains(name); });
+    const CasesByName registered = registered_cases(again, profile);
+    again.unknown += std::erase_if(names, [&](const std::string& name) {
+      return !registered.contains(name);
+    });
+    for (const std::string& name : names)
+      count_keys(*stored.at(name), registered.at(name), numerics, again);
   }
   std::erase_if(again.cases, [](const auto& of) { return of.second.empty(); });
 }
@@ -87,17 +121,18 @@ Again again_of(const NamedDigest& campaign,
     again.cases[own.empty() ? provenance.value("profile", "") : own].push_back(
         c.info.name);
     seeds.insert(c.info.seed);
+    again.stages += c.stages.size();
     for (const StageRecord& s : c.stages)
       if (has_time(s)) again.cpu_seconds += s.clocks.solve.cpu;
   }
   again.seeds = fmt::format("{}", fmt::join(seeds, ","));
-  drop_unknown(again);
+  match_with_registered(results, again);
   return again;
 }
 
 /// Those of `campaigns` below `folder` that decide a claim (`latest` is what
 /// all of them come to) of this paper, with the paper's cases alone, or,
-/// without a paper, all of them; the cheapest first.
+/// without a paper, all of them; the longest first.
 std::vector<Again> to_run_again(const std::vector<NamedDigest>& campaigns,
                                 const Papers& latest,
                                 const fs::path& folder,
@@ -116,7 +151,7 @@ std::vector<Again> to_run_again(const std::vector<NamedDigest>& campaigns,
     all.push_back(std::move(again));
   }
   std::stable_sort(all.begin(), all.end(), [](const Again& a, const Again& b) {
-    return a.cpu_seconds < b.cpu_seconds;
+    return a.cpu_seconds > b.cpu_seconds;
   });
   return all;
 }
@@ -140,13 +175,14 @@ std::string text_of(const std::vector<ClaimKey>& claims) {
 }
 
 std::string plan_text(const std::vector<Again>& all) {
-  Columns table({"<campaign", "cases", "CPU time", "<decides"});
+  Columns table({"<campaign", "cases", "CPU time", "same key", "<decides"});
   double seconds = 0;
   std::size_t cases = 0, unknown = 0;
   for (const Again& a : all) {
     table.add({a.name,
                std::to_string(a.size()),
                duration_text(a.cpu_seconds),
+               fmt::format("{}/{}", a.same_keys, a.stages),
                text_of(a.decides)});
     seconds += a.cpu_seconds, cases += a.size(), unknown += a.unknown;
   }
@@ -161,22 +197,30 @@ std::string plan_text(const std::vector<Again>& all) {
   return text;
 }
 
-/// What a run ended with, if the next one can go on.
-std::optional<std::string> trouble_of_run(const Arguments& arguments) {
+/// What the runs of a campaign ended with.
+struct RunEnding {
+  std::vector<std::string> troubles;
+  bool complete = true;  ///< every case was run
+};
+
+void run(const Arguments& arguments, RunEnding& ended) {
   try {
     run_verb(arguments);
-    return {};
   } catch (const ExitError& error) {
-    if (error.code() != ExitCode::case_failed) throw;
-    return error.what();
+    if (error.code() == ExitCode::incomplete)
+      ended.complete = false;
+    else if (error.code() != ExitCode::case_failed)
+      throw;
+    ended.troubles.push_back(error.what());
   }
 }
 
-/// Into OUT/NAME; what was wrong.
-std::vector<std::string> run_again(const Again& again,
-                                   const ReproduceFlags& flags,
-                                   const std::string& store) {
-  std::vector<std::string> troubles;
+/// Into `store`; until the time `until` [s].
+RunEnding run_again(const Again& again,
+                    const ReproduceFlags& flags,
+                    const std::string& store,
+                    double until) {
+  RunEnding ended;
   for (const auto& [profile, names] : again.cases) {
     Arguments arguments{"--profile=" + profile,
                         "--seeds=" + again.seeds,
@@ -188,9 +232,13 @@ std::vector<std::string> run_again(const Again& again,
       arguments.push_back("--set=" + set);
     if (flags.jobs > 0)
       arguments.push_back(fmt::format("--jobs={}", flags.jobs));
-    if (auto t = trouble_of_run(arguments)) troubles.push_back(*t);
+    if (flags.share_cores) arguments.push_back("--share-cores");
+    if (until < kNever)
+      arguments.push_back(fmt::format("--time-budget={:.3f}s",
+                                      std::max(1e-3, until - now().wall)));
+    run(arguments, ended);
   }
-  return troubles;
+  return ended;
 }
 
 void publish(const std::string& store, const fs::path& folder) {
@@ -224,6 +272,37 @@ std::size_t show_changes(const std::vector<Again>& all,
   return changed.size();
 }
 
+struct Reproduced {
+  std::vector<Again> complete;
+  std::vector<std::string> troubles;
+};
+
+/// Runs all within `budget` [s] and publishes into `kept` those of which every
+/// case was run.
+Reproduced reproduce_all(const std::vector<Again>& all,
+                         const ReproduceFlags& flags,
+                         const fs::path& kept,
+                         double budget) {
+  Reproduced result;
+  const double until = now().wall + budget;
+  for (const Again& again : all) {
+    if (again.cases.empty()) continue;  // none is registered any more
+    if (now().wall >= until) {
+      result.troubles.push_back(again.name +
+                                ": not begun within the time budget");
+      continue;
+    }
+    const std::string store = flags.out + '/' + again.name;
+    const RunEnding ended = run_again(again, flags, store, until);
+    for (const std::string& t : ended.troubles)
+      result.troubles.push_back(again.name + ": " + t);
+    if (!ended.complete) continue;
+    publish(store, kept / again.name);
+    result.complete.push_back(again);
+  }
+  return result;
+}
+
 /// False if help was asked for.
 bool parse_flags(const Arguments& arguments, ReproduceFlags& flags) {
   return parse(
@@ -246,6 +325,14 @@ bool parse_flags(const Arguments& arguments, ReproduceFlags& flags) {
         &flags.out,
         "DIR"},
        {"-j,--jobs", "worker processes; default: cores", &flags.jobs},
+       {"--share-cores",
+        "give free cores to running cases, as in run",
+        &flags.share_cores},
+       {"--time-budget",
+        "wall time of all campaigns, such as 2h: the longest run first; what "
+        "is left runs when the command is repeated",
+        &flags.budget,
+        "TIME"},
        {"--dry-run", "print what would run and the time it took", &flags.dry}},
       arguments);
 }
@@ -258,6 +345,9 @@ ExitCode reproduce_verb(const Arguments& arguments) {
   if (flags.names.empty() == flags.paper.empty())
     throw UsageError(
         "give either published campaigns or a paper (--paper=KEY)");
+  const double budget = flags.budget.empty()
+                            ? kNever
+                            : parse_duration("--time-budget", flags.budget);
   const auto campaigns = published_digests(flags.campaigns, flags.names);
   const Papers latest = latest_claims(campaigns);
   const auto all =
@@ -272,18 +362,14 @@ ExitCode reproduce_verb(const Arguments& arguments) {
             keys_of(latest)));
   fmt::print("{}", plan_text(all));
   if (flags.dry) return ExitCode::good;
-  std::vector<std::string> troubles;
   const std::string kept = flags.out + "/campaigns";
-  for (const Again& again : all) {
-    if (again.cases.empty()) continue;  // none is registered any more
-    const std::string store = flags.out + '/' + again.name;
-    for (const std::string& t : run_again(again, flags, store))
-      troubles.push_back(again.name + ": " + t);
-    publish(store, fs::path(kept) / again.name);
+  const auto [complete, troubles] = reproduce_all(all, flags, kept, budget);
+  std::size_t changed = 0;
+  if (!complete.empty()) {
+    results_verb({"--campaigns=" + kept, "--out=" + flags.out + "/RESULTS.md"});
+    changed =
+        show_changes(complete, latest, latest_claims(published_digests(kept)));
   }
-  results_verb({"--campaigns=" + kept, "--out=" + flags.out + "/RESULTS.md"});
-  const std::size_t changed =
-      show_changes(all, latest, latest_claims(published_digests(kept)));
   if (!troubles.empty())
     throw ExitError(ExitCode::incomplete,
                     fmt::format("{} campaigns are incomplete, first {}",

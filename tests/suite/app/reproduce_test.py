@@ -47,3 +47,13 @@ with tempfile.TemporaryDirectory() as d:
     assert os.path.isfile(d + "/again/RESULTS.md")
     assert "\n0 stages run" in reproduce(
         0, CHEAP, "--out=again", "--jobs=1", cwd=d)
+
+    # Campaigns run here have today's keys; without time nothing is published.
+    assert re.search(r" (\d+)/\1 ", reproduce(
+        0, CHEAP, "--dry-run", cwd=d, campaigns="again/campaigns"))
+    late = reproduce(10, CHEAP, OF_TWO_PAPERS, "--time-budget=0.000001",
+                     "--out=late", cwd=d)
+    assert "2 campaigns are incomplete" in late, late
+    assert not os.path.exists(d + "/late/campaigns")
+    assert "--time-budget" in reproduce(
+        2, CHEAP, "--time-budget=soon", cwd=d)
