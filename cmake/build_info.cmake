@@ -18,7 +18,7 @@ list(JOIN physinv_directory_options " " physinv_directory_options)
 string(CONCAT physinv_flags_text "${CMAKE_CXX_FLAGS} "
   "${CMAKE_CXX_FLAGS_${physinv_config}} ${physinv_options} "
   "${physinv_directory_options}")
-# A directory's options may hang on the compiler: -fpch-preprocess, which is
+# A directory's options may depend on the compiler: -fpch-preprocess, which is
 # there with ccache alone. No result depends on it.
 string(GENEX_STRIP "${physinv_flags_text}" physinv_flags_text)
 string(REGEX REPLACE " +" " " physinv_flags_text "${physinv_flags_text}")

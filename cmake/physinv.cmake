@@ -85,7 +85,7 @@ if(PHYSINV_SANITIZE)
 endif()
 
 # The archives also become part of shared objects (plug-ins load into a program,
-# the Python module). Nobody replaces a function of theirs, so that calls stay
+# the Python module). No program replaces their functions, so calls stay
 # direct: the same bits and the same speed as without.
 add_compile_options(-fPIC -fno-semantic-interposition)
 
@@ -138,7 +138,7 @@ endfunction()
 # physinv_layer(<name> [OBJECT] [NUMBERS | RECORDS] [PRECOMPILE headers]
 # SOURCES a.cpp "b.cpp c.cpp" ... DEPENDS ...): one target per layer. Sources
 # between quotes are compiled as one; so a new one compiles no other batch anew.
-# OBJECT keeps registrations that nobody names from the linker's broom. NUMBERS
+# OBJECT keeps the linker from dropping registrations that nothing uses. NUMBERS
 # computes what is recorded: physinv_<name>_v3 is the same for AVX2, where that is
 # another build. PRECOMPILE: headers of the project that nearly every source of
 # the layer includes, or a layer that has them precompiled. RECORDS handles

@@ -93,7 +93,7 @@ inline std::vector<Token> tokens_of(std::string_view text) {
   }
 }
 
-/// All tokens, told apart: what a hash of a source is of.
+/// All tokens with separators: the hash of a source is computed from them.
 inline std::string substance(const std::vector<Token>& tokens) {
   std::string text;
   for (const Token& token : tokens) text += token.text + '\0';

@@ -1,5 +1,5 @@
 # Writes ${folder}/revision.cpp, which tells the revision of the sources in
-# ${root} under ${name}, and revision.d naming what it hangs on: where git
+# ${root} under ${name}, and revision.d naming what it depends on: where git
 # stands, and every tracked file.
 cmake_minimum_required(VERSION 3.25)
 

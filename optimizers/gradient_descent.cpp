@@ -119,7 +119,7 @@ void GradientDescent::begin_iteration() {
   }
   active_.resize(kept);
   if (!active_.empty() || flat_.empty()) return;
-  // Nobody to wait for: the first trial and one sub-step.
+  // Only flat problems are left: count their first trial and one sub-step.
   for (const Index i : flat_) evaluations_[at(i)] += 2;
   skipped_trials_ += 2 * flat_.size();
   end_iteration();

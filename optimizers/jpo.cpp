@@ -71,7 +71,7 @@ class JointLoss final : public Signal<T> {
     oracle_.template warm_up<T>();
   }
 
-  /// Nobody needs the gradient at the last evaluation.
+  /// The last evaluation needs no gradient.
   bool evaluate(bool last) override {
     (*map_)(model_.forward(), observations_, x_);
     if (last) {

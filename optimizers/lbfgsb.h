@@ -48,7 +48,7 @@ class Lbfgsb final : public IndependentSolver {
   struct Problem {
     LimitedMemory memory;
     LineSearch line;
-    double slope = 0, longest = 0;  // of the search under way
+    double slope = 0, longest = 0;  // of the current search
   };
 
   void set_box(Index d);

@@ -122,7 +122,7 @@ std::string failing_html(const Section& section) {
                              items);
 }
 
-/// One line for all that nobody could judge.
+/// One line for all statements that could not be judged.
 std::string open_html(const std::vector<const Section*>& sections) {
   std::set<std::string> profiles;
   int count = 0;

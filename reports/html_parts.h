@@ -54,7 +54,7 @@ struct PageParts {
 /// A page that needs nothing but itself.
 std::string page_html(const PageParts& parts);
 
-/// How many statements came to which verdict, and a row per section.
+/// Counts of statements by verdict, one row per section.
 std::string overview_html(const std::vector<Section>& sections,
                           const std::vector<Anchors>& anchors);
 /// Links to the sections' claims, tables and figures.

@@ -1,4 +1,4 @@
-/// What published campaigns come to about each claim.
+/// The verdict on each claim, from the published campaigns.
 #pragma once
 
 #include <map>

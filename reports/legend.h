@@ -24,7 +24,7 @@ std::string undrawn_text(const Figure& figure);
 int legend_index(const std::vector<const Series*>& legend,
                  const Series& series);
 
-/// What an entry of a legend is told apart by: what of its ink is drawn.
+/// What distinguishes an entry of a legend: its drawn line and markers.
 struct DrawnStyle {
   int color = 0, marker = -1, pattern = -1;  ///< -1: none
   auto operator<=>(const DrawnStyle&) const = default;

@@ -230,7 +230,7 @@ std::string experiments(const std::vector<NamedDigest>& campaigns,
   return out;
 }
 
-/// What studies came to, in a paragraph.
+/// The results of studies, in a paragraph.
 std::string studies_line(const Papers& papers, const ResultsLinks& links) {
   std::string out;
   for (const auto& [paper, all] : papers)

@@ -38,7 +38,7 @@ struct Call {
   double best;
   std::exception_ptr thrown = {};
 
-  /// No exception passes NLopt, which is C: it is told to stop.
+  /// No exception passes NLopt, which is C: `force_stop` stops it instead.
   static double f(unsigned d, const double* x, double* slope, void* self) {
     auto& call = *static_cast<Call*>(self);
     double loss = std::numeric_limits<double>::quiet_NaN();

@@ -338,7 +338,7 @@ class Billiards final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
       }
       Lanes<T>(out, 2).store(x_bar, b * kLanes<T>);
     }
-    // Padded lanes are misses that nobody asked for: count from the samples.
+    // Padded lanes count as misses: take counts from the samples.
     work.counts[Counter::skipped_vjp] +=
         static_cast<std::uint64_t>(count - count_set(computed));
   }

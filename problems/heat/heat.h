@@ -78,7 +78,7 @@ struct HeatTable {
 Batch<double> heat_gradient_descent(const Batch<double>& exponents,
                                     Index steps);
 
-/// The diffusion mode by mode, for whoever looks at spectra.
+/// The diffusion of each mode, for tests and plots of spectra.
 class HeatModes {
  public:
   explicit HeatModes(const HeatOptions& options);

@@ -16,8 +16,8 @@
 
 namespace physinv {
 
-/// Samples under way: their unknowns, their spectrum and scratch, `stride`
-/// each.
+/// Samples being simulated: their unknowns, their spectrum and scratch,
+/// `stride` each.
 template <class P>
 struct Etdrk2Run {
   P alpha, beta;

@@ -34,7 +34,7 @@ struct Circle {
 };
 
 /// Smoothed noise: modes times 1 / q^2, q = 10 m / box, summed as they are
-/// (the samples are few, and their bits must not hang on an FFT).
+/// (the samples are few, and their bits must not depend on an FFT).
 void draw_state(const KuramotoSivashinskyOptions& o,
                 const Circle& circle,
                 Stream& stream,

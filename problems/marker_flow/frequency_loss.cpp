@@ -10,7 +10,7 @@
 namespace physinv {
 namespace {
 
-/// to += c from, written out: the bits must not hang on the compiler.
+/// to += c from, written out: the bits must not depend on the compiler.
 void add_times(double c, const double* from, double* to, Index count) {
   for (Index i = 0; i < count; ++i) to[i] = std::fma(c, from[i], to[i]);
 }

@@ -381,7 +381,7 @@ class NavierStokes final : public Problem<T>,
   }
 
  private:
-  /// A problem that nobody asks for a flow factors nothing.
+  /// Factored when a flow is first simulated.
   const Kernel<T>& kernel() const {
     std::call_once(lazy_->made, [&] {
       lazy_->kernel = std::make_unique<const Kernel<T>>(options_);

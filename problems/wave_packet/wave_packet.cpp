@@ -187,7 +187,7 @@ class WavePacket final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
   }
 
   /// Squared error or half of it, in lanes of double added up in a fixed order:
-  /// signals with the same bits have the same loss, whoever computed them.
+  /// signals with the same bits have the same loss, in each of these functions.
   void loss(BatchIn<T> y,
             BatchIn<T> target,
             VectorOut<double> loss) const override {

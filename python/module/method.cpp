@@ -139,7 +139,7 @@ class CaseThreads {
   py::object before_;
 };
 
-/// Whoever keeps what a method saw sees nothing of it afterwards.
+/// Closes what a method was given: later calls through a kept copy fail.
 struct Ending {
   Solving& solving;
   ~Ending() { solving.end(); }

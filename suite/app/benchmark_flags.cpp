@@ -38,7 +38,7 @@ void check(const char* flag,
                 "{}={} is unknown; did you mean {}?", flag, value, near));
 }
 
-/// What stands there stays, and a pipe that nobody reads is not waited for.
+/// An existing file is kept, and a pipe without a reader is not waited for.
 void touch(const std::string& file) {
   const int fd =
       open(file.c_str(), O_WRONLY | O_CREAT | O_NONBLOCK | O_CLOEXEC, 0644);

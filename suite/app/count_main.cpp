@@ -1,5 +1,5 @@
 // physinv-count [--perf] PROFILE CASE...: runs cases, here and on one thread,
-// for whoever counts the instructions of `physinv_counted`: callgrind from
+// for programs that count the instructions of `physinv_counted`: callgrind from
 // outside, or with --perf this program, which prints them. It is built for
 // x86-64-v3, as valgrind knows no AVX-512.
 #include <fmt/format.h>

@@ -168,7 +168,7 @@ class AgainstBaseline {
     return lines;
   }
 
-  /// What the report says of counts that nobody compares.
+  /// What the report says about counts that are not compared.
   void leave_counts(const std::vector<CountLine>& lines,
                     const std::string& verdict,
                     const std::string& why,

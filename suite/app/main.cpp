@@ -120,9 +120,10 @@ ExitCode dispatch(Arguments arguments) {
   refuse_verb(arguments[0]);
 }
 
-/// Whoever starts us may have closed 0, 1 or 2. The next file that opens would
-/// take the place, and what is printed would land in the journal or the lock.
-/// Output that was closed cannot be written into: what is printed there fails.
+/// The calling process may have closed 0, 1 or 2. The next file that opens
+/// would take the place, and what is printed would land in the journal or the
+/// lock. Output that was closed cannot be written into: what is printed there
+/// fails.
 void open_standard_streams() {
   int fd = 0;
   while (fd >= 0 && fd <= STDERR_FILENO) {
@@ -206,7 +207,8 @@ ExitCode guarded(Arguments arguments) {
 
 int main(int argc, char** argv) {
   physinv::open_standard_streams();
-  // A write beyond the limit on file sizes then fails with EFBIG and is told.
+  // A write beyond the limit on file sizes then fails with EFBIG and is
+  // reported.
   std::signal(SIGXFSZ, SIG_IGN);
   return static_cast<int>(physinv::guarded(
       physinv::Arguments(argv + std::min(1, argc), argv + argc)));

@@ -60,7 +60,7 @@ void add_statuses(StageRecord& stage, const Json& own) {
         s);
 }
 
-/// The losses are told apart by all three numbers that are kept of them.
+/// Losses are distinguished by all three numbers that are stored of them.
 void add_losses(StageRecord& stage, const Json& entry) {
   if (!has_time(stage)) return;
   stage.loss = Vector<double>::Constant(1, number(entry, "loss_median"));

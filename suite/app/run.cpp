@@ -179,7 +179,7 @@ std::string result_text(const RunFlags& flags, const CampaignResult& r) {
   return text + fmt::format("results: {}\n", flags.campaign.out.string());
 }
 
-/// What a campaign that did not come to its end says last.
+/// The last line of a campaign that did not finish.
 std::string go_on_text(const RunFlags& flags) {
   return flags.campaign.resume ? "the same command resumes"
                                : "the same command without --fresh resumes";
@@ -348,7 +348,7 @@ CampaignResult run_all(Prepared prepared,
   return result;
 }
 
-/// A reader that sleeps keeps nobody from ending it.
+/// Ctrl-C also works while the reader of a pipe blocks.
 void say_what_runs(const RunFlags& flags,
                    const std::vector<Case>& cases,
                    const Screen& screen) {
@@ -360,7 +360,8 @@ void say_what_runs(const RunFlags& flags,
                     "interrupted before the first case; nothing was run");
 }
 
-/// Pages and lines; what a run came to goes before what they came to.
+/// Writes pages and lines; the error of the run, if any, takes precedence over
+/// theirs.
 void end_with(const RunFlags& flags,
               const std::vector<CaseRecord>& own,
               const Screen& screen,

@@ -21,7 +21,7 @@ namespace {
 
 /// Shorter budgets are not spent on measuring speeds.
 constexpr double kBudgetForTrials = 60;
-/// What a case under way may take beyond the budget, and how long it waits at
+/// What a running case may take beyond the budget, and how long it waits at
 /// least: a budget of nothing starts nothing and needs no alarm.
 constexpr double kBeyond = 1.04, kLeastSeconds = 0.2;
 /// What comes after the last case, alone on the machine: writing down, and
@@ -33,7 +33,7 @@ constexpr suseconds_t kAgainMicroseconds = 50'000;
 
 volatile std::sig_atomic_t rang = 0;
 
-/// To whoever counts signals to stop; nobody is killed by it.
+/// Sends SIGTERM only to a handler that counts it; nothing is killed.
 void ring(int) {
   struct sigaction counting {};
   sigaction(SIGTERM, nullptr, &counting);

@@ -24,7 +24,7 @@ void follow_budget(CampaignOptions& campaign,
                    const BudgetUse& use);
 
 /// Ends the campaign that runs while it lives as a signal to stop would, once
-/// the budget is spent and a little more: stages under way lay their state
+/// the budget is spent and a little more: running stages save their state
 /// down. Nothing without a budget.
 class BudgetAlarm {
  public:
@@ -32,7 +32,7 @@ class BudgetAlarm {
   ~BudgetAlarm();
   BudgetAlarm(const BudgetAlarm&) = delete;
   BudgetAlarm& operator=(const BudgetAlarm&) = delete;
-  /// It rang, and nobody else asked to stop.
+  /// It rang, and there was no other request to stop.
   bool ended_it() const;
 
  private:

@@ -31,7 +31,7 @@ std::vector<double> differences_of(const StageRecord& first,
   return all;
 }
 
-/// Whether it came to a result or not; null if it was not run.
+/// With or without a result; null if it was not run.
 const StageRecord* same_stage(const Results& results,
                               const CaseInfo& info,
                               const std::string& name) {

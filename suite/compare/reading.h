@@ -31,8 +31,8 @@ struct Times {
   int threads = 1;  ///< 0: not known
   bool crowded = false;
 
-  /// Where one thread ran, or, if nobody knows how many, no more than one core
-  /// was at work: others on the machine add little to CPU time.
+  /// Where one thread ran, or, if their number is not known, no more than one
+  /// core was at work: others on the machine add little to CPU time.
   bool of_one_core() const;
 };
 

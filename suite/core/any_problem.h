@@ -1,5 +1,5 @@
 /// A problem with the calls of all abilities, as its recipe makes it: for
-/// whoever holds arrays. Sizes are checked here, once for all problems.
+/// callers that hold arrays. Sizes are checked here, once for all problems.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-/// The state of something under way as bytes, and back. Each part says once
+/// The state of a running method as bytes, and back. Each part says once
 /// what it keeps, for both ways:
 ///
 ///   void serialize(Archive& archive) { archive(m_, v_, steps_); }

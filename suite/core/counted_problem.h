@@ -1,6 +1,6 @@
 /// A problem for methods that call it themselves, anywhere and on any data:
 /// every run of it is counted, in memory of its own. The oracle hands it out
-/// (`Oracle::problem`); whoever runs it gives its counts back (`Oracle::add`).
+/// (`Oracle::problem`); its user adds its counts (`Oracle::add`).
 #pragma once
 
 #include "suite/core/any_problem.h"

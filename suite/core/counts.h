@@ -20,7 +20,8 @@ enum class Counter : std::uint8_t {
   skipped_forward,   ///< evaluations of finished examples, not made
   skipped_features,  ///< input encodings reused, not recomputed
   skipped_rows,      ///< first-layer rows folded, constant over the batch
-  skipped_events,    ///< motion that nobody observes, not simulated
+  skipped_events,    ///< motion that does not affect the observation, not
+                     ///< simulated
   skipped_trials,    ///< line-search trials known to change nothing
   skipped_zeros,     ///< entries of y without a signal, not computed
   skipped_steps,     ///< time steps of diverged samples, not simulated

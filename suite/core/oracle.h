@@ -70,7 +70,7 @@ class Oracle {
   /// Other problems of the same kind and configuration, from another stream.
   Oracle sibling(Index count, const Rng& data, Needs allowed) const;
 
-  /// The problem for metrics and whoever else looks on: what it is, and runs
+  /// The problem for metrics and other observers: what it is, and runs
   /// that are not part of a method's work. Not counted.
   const Problem<double>& inspect() const { return *problem_; }
 

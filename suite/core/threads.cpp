@@ -56,7 +56,7 @@ class Waiting {
 }  // namespace
 
 struct Threads::Pool {
-  /// Nobody else comes in; below it, how many workers are inside.
+  /// Set: no other worker enters; the bits below count the workers inside.
   static constexpr int kClosed = 1 << 30;
 
   std::vector<std::thread> workers;

@@ -91,7 +91,7 @@ std::string title_of(const std::string& method, const ProfileOptions& options) {
   return title == options.method_titles.end() ? method : title->second;
 }
 
-/// Of the methods that came to losses at this n.
+/// Of the methods that have losses at this n.
 Curves curves_of(const Results& results,
                  const std::string& experiment,
                  Index n,

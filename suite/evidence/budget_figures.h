@@ -1,5 +1,5 @@
-/// What every experiment shows of all its methods, whoever added them: how much
-/// they solve with a budget, and their losses along it.
+/// What every experiment shows of all its methods, also those of users: how
+/// much they solve with a budget, and their losses along it.
 #pragma once
 
 #include <map>

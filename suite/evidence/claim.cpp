@@ -17,7 +17,7 @@ std::ptrdiff_t rank_of(const std::vector<std::string>& profiles,
 }
 
 /// The largest profile that a campaign ran of the experiment, -1 for none. A
-/// profile that nobody declares is as good as the last: its user knows.
+/// profile that is not declared ranks like the last one.
 std::ptrdiff_t rank_of(const Evidence& evidence,
                        const std::vector<std::string>& profiles) {
   std::ptrdiff_t rank = -1;

@@ -98,7 +98,7 @@ CommonRuns common_runs(const Results& results,
       out.groups.push_back(std::move(*group));
     }
   }
-  // Where all methods failed at once nobody tells how many problems there were.
+  // Where all methods failed at once, the number of problems is not known.
   for (CommonRun& group : out.groups)
     if (group.examples == 0) group.examples = out.runs ? 1 : group.n;
   out.sizes.assign(sizes.begin(), sizes.end());

@@ -69,7 +69,7 @@ bool knows_work(const StageRecord& s) {
          s.counts.knows(Counter::vjp);
 }
 
-/// What a stage spent, whether it came to an end or failed.
+/// What a stage spent, finished or failed.
 void add_spent(ConvergenceHistory& history, const StageRecord& s) {
   if (s.stop == Stop::skipped) return;
   const auto add = [](std::optional<double>& sum, bool known, double spent) {

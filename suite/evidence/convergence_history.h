@@ -12,7 +12,7 @@ struct ConvergenceHistory {
   std::vector<double> seconds, simulations;
   std::vector<Vector<double>> loss;  ///< one entry per problem
   /// All that the chain spent, that of a stage that failed included; empty
-  /// where nobody knows what that was, as its process was lost.
+  /// where that is not known because its process was lost.
   std::optional<double> all_seconds = {}, all_simulations = {};
   bool failed = false;  ///< one of the stages, so that the chain has no end
 };

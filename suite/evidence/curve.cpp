@@ -20,7 +20,7 @@ LossPoint between(const LossPoint& a, const LossPoint& b, double share) {
           math::exp(mix(math::log(a.loss), math::log(b.loss)))};
 }
 
-/// Where updates or seconds come to `x`.
+/// Where updates or seconds reach `x`.
 std::optional<LossPoint> where(double LossPoint::*axis,
                                double x,
                                const StageRecord& stage) {

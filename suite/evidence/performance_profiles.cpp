@@ -16,10 +16,11 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-/// Steps nearer than this factor are drawn as one; nobody sees less.
+/// Steps nearer than this factor are drawn as one; smaller steps are not
+/// visible.
 constexpr double kNearest = 1.02;
 
-/// Loss to reach; empty if a method starts there or nobody has a number.
+/// Loss to reach; empty if a method starts there or none has a number.
 std::optional<double> target_of(const CommonRun& group,
                                 Index example,
                                 double tolerance) {

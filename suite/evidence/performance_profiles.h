@@ -33,7 +33,7 @@ struct LossRange {
   double start, lowest;
 };
 
-/// Empty if nobody starts with a finite loss.
+/// Empty if no method starts with a finite loss.
 std::optional<LossRange> loss_range(const CommonRun& group, Index example);
 
 /// Costs of one method, one entry per problem; infinite where it fails.
@@ -66,7 +66,7 @@ struct TargetCosts {
   /// The batch's, over n; those of training if a problem is a run. At least 1.
   std::vector<Costs> simulations = {};
   /// The same, and of what is not solved all that its chain spent until its
-  /// end or its failure; NaN where nobody knows that.
+  /// end or its failure; NaN where it is not known.
   std::vector<Costs> spent_seconds = {}, spent_simulations = {};
   bool runs = false;              ///< a problem is a run
   Index left_out = 0;             ///< methods beyond those that end lowest
@@ -90,8 +90,8 @@ TargetCosts target_costs(const Results& results,
 /// least? Otherwise an axis of simulations shows nothing.
 bool any_simulated(const std::vector<Costs>& simulations);
 
-/// A curve for each method: the share of its costs up to x. No curves if nobody
-/// has a finite cost.
+/// A curve for each method: the share of its costs up to x. No curves if no
+/// method has a finite cost.
 Panel cost_panel(const std::vector<Costs>& values,
                  const std::vector<std::string>& methods,
                  const std::map<std::string, std::string>& titles);

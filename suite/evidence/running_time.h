@@ -16,7 +16,7 @@ struct RunningTime {
 };
 
 /// `cost` until the target, infinite where it is not reached; `spent` is the
-/// same and, where it is not reached, all that was spent, NaN if nobody knows:
+/// same and, where it is not reached, all that was spent, NaN if not known:
 /// a run without a cost would make who gives up look cheap. The interval is of
 /// 1,000 resamplings of the problems (percentile bootstrap, Efron 1979), drawn
 /// from the stream of this name: same costs, same interval.

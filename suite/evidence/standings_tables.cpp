@@ -44,7 +44,7 @@ std::string noun(const CommonRuns& common) {
   return common.runs ? "runs" : "problems";
 }
 
-/// Runs of a method that failed, and those of them that nobody knows the time
+/// Runs of a method that failed, and those of them without a known time
 /// or the simulations of.
 struct Failed {
   std::string method;

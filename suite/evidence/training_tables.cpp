@@ -227,7 +227,7 @@ void scale_like_first(std::vector<Panel>& row) {
 }
 
 /// Each panel and its observation in turn, those of the truth first; none if
-/// nobody answers it.
+/// it is not answered.
 std::vector<Panel> fields_of(const Evidence& e,
                              const std::vector<MethodLine>& lines,
                              const AnsweredFields& drawn,

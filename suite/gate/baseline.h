@@ -1,4 +1,4 @@
-/// A baseline: what a campaign came to, as a text that a reviewer reads in a
+/// A baseline: the results of a campaign, as a text that a reviewer reads in a
 /// diff. A header, a line per stage (stage_line.h), the instructions of some
 /// cases, and a checksum of it all:
 ///
@@ -36,7 +36,7 @@ struct CountLine {
 
 /// Counts of one counter on one instruction set, in nothing else comparable.
 struct CountTable {
-  std::string counter;  ///< "callgrind x86-64-v3"; empty: nobody counted
+  std::string counter;  ///< "callgrind x86-64-v3"; empty: not counted
   std::vector<CountLine> lines;
 };
 

@@ -33,7 +33,7 @@ struct GateReport {
   ExitCode code() const;
 };
 
-/// One line: how many of each kind came to each verdict.
+/// One line: counts by kind and verdict.
 std::string summary_text(const GateReport& report);
 /// Where the clock was asked and decided nothing; else empty.
 std::string undecided_text(const GateReport& report);

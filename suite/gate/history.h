@@ -35,7 +35,7 @@ PastBaseline past_baseline(std::string_view text);
 /// Figures over the commits, oldest first, and a table of them; nothing of
 /// fewer than two. Losses link over stages of one name with as many losses that
 /// are finite, both raised to kEqualLoss; instructions over cases of one
-/// counter; seconds where the machine is the same and both stages came to their
+/// counter; seconds where the machine is the same and both stages reached their
 /// ends. What failed or diverged links nothing and is counted.
 std::vector<Section> history_of(const std::vector<PastBaseline>& past);
 

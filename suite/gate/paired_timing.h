@@ -38,7 +38,7 @@ void require_one_processor(const std::filesystem::path& base,
                            const std::filesystem::path& head);
 
 /// Who runs a program on some cases: milliseconds of solving for each of them;
-/// no number where a stage came to no end that has a time.
+/// no number where a stage ended without a time.
 using Runner = std::function<std::vector<double>(
     const std::filesystem::path& program, const std::vector<std::string>&)>;
 

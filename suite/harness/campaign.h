@@ -40,12 +40,12 @@ struct CampaignOptions {
   bool share_cores = false;
   /// Seconds that a case runs before it is asked for that.
   double share_seconds = 5;
-  /// Seconds between the states that a stage under way lays down.
+  /// Seconds between the checkpoints of a running stage.
   double checkpoint_seconds = 60;
   /// Seconds after which a worker is named that tells nothing and computes
   /// nothing.
   double still_seconds = 60;
-  /// Take the lock of the store from whoever has it, where there is no flock.
+  /// Take the lock of the store from its owner, where there is no flock.
   bool break_lock = false;
   /// Run with data one ulp off, as `prepare` drew them.
   bool disturb = false;

@@ -43,7 +43,7 @@ class CheckpointFile final : public Checkpoint {
   /// The stage cannot go on from there.
   void drop();
   bool due() override;
-  /// Since the stage began, whoever ran it.
+  /// Since the stage began, in all processes that ran it.
   const ThreadLog& threads() const { return log_; }
   /// A disk that is full costs the checkpoint, not the stage. Throws StageLeft
   /// where the stage is to be left.

@@ -20,7 +20,7 @@ void put_blindly(std::FILE* stream, std::string_view text) {
   std::fflush(stream);
 }
 
-/// Can the descriptor take PIPE_BUF bytes? False if nobody has read for a
+/// Can the descriptor take PIPE_BUF bytes? False if there was no reader for a
 /// while since a signal to stop, and from then on at once.
 bool wait_for_reader(int fd) {
   static int waits = 0;

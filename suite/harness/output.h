@@ -7,7 +7,7 @@
 
 namespace physinv {
 
-/// Writes what the stream holds back, and the text. Waits for whoever reads it;
+/// Writes what the stream holds back, and the text. Waits for its reader;
 /// after a signal to stop (suite/harness/stop_signal.h) not for long: the rest
 /// is dropped then. An error stays in the stream.
 void put(std::FILE* stream, std::string_view text);

@@ -11,7 +11,7 @@ namespace physinv {
 /// aarch64, where Linux writes none, who designed the core and which it is
 /// ("ARM Neoverse-N1", "0x61 part 0x022" if not known here). `board` is what
 /// the device tree says of the machine ("Raspberry Pi 4 Model B"), may be
-/// empty, and stands for what the text does not tell. Empty if nobody tells.
+/// empty, and stands for what the text does not tell. Empty if it is not known.
 /// Numbers of parts: Arm, Main ID Register, MIDR_EL1.
 std::string processor_name(std::string_view cpuinfo, std::string_view board);
 

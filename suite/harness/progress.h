@@ -70,8 +70,8 @@ class Progress {
   /// first.
   void put_line(const std::string& row, const StageRecord& record);
   std::size_t name_width() const;
-  /// A campaign does not end because nobody can read how it goes: an error
-  /// stays in the stream, for whoever prints the result.
+  /// A campaign does not end because its progress cannot be written: an error
+  /// stays in the stream, for the code that prints the result.
   void put(const std::string& text) const;
 
   Screen screen_;

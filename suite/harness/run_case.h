@@ -27,7 +27,7 @@ struct RunOptions {
 /// is.
 Precision working_precision(const Case& c);
 
-/// What is told while a case runs; empty functions are not called.
+/// Called while a case runs, unless they are empty.
 struct CaseHooks {
   std::function<void(Index position)> started;
   /// At points of the curve: iterations done, median loss of the examples.
@@ -47,7 +47,7 @@ void run_case(const Case& c,
               Threads* threads,
               const CaseHooks& hooks);
 
-/// The record of a stage that did not come to a result. What a stage that
+/// The record of a stage without a result. What a stage that
 /// failed spent is not known, that of one that was skipped is nothing.
 StageRecord lost_stage(const Case& c,
                        Index position,

@@ -122,7 +122,7 @@ void unify(StageRecord& r, Outcome& out) {
 }
 
 /// What a stage that failed has run. Who runs a problem itself tells its counts
-/// at its end alone: then nobody knows them.
+/// only at its end: then they are not known.
 Counts counts_of_failure(const Oracle& oracle) {
   return oracle.handed_out() ? unknown_counts() : oracle.counts();
 }

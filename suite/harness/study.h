@@ -4,7 +4,7 @@
 ///   register_study("studies/billiards-precision", "jpo/billiards");
 ///
 /// All settings see what the experiment that is varied sees: the random streams
-/// of data, network starts and batches hang on its name, and a stage of equal
+/// of data, network starts and batches depend on its name, and a stage of equal
 /// options has its content key, so that what it ran is reused.
 #pragma once
 

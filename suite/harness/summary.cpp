@@ -11,7 +11,7 @@
 namespace physinv {
 namespace {
 
-/// What the cases of one experiment came to.
+/// The results of the cases of one experiment.
 struct Group {
   std::string experiment;
   std::set<std::string> methods;

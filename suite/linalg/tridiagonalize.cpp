@@ -149,7 +149,7 @@ void Tridiagonalize::panel(Index first, Index count) {
     product_(a_, k, vi, wi, threads_);
     project(length, i, v + from, stride, vi + from, by_v);
     project(length, i, w + from, stride, vi + from, by_w);
-    // The column behind the panel is left to RankUpdate: nobody reads its copy.
+    // The column behind the panel is left to RankUpdate: its copy is not read.
     double* const next =
         (i + 1 < count ? a_.row(k) : w + kPanel * stride) + from;
     for (Index p = 0; p < i; ++p) {

@@ -21,7 +21,7 @@ struct Cost {
 
 /// In the order of the cases. A chain is tried with the smallest and the
 /// largest n of the selection; between the two, time and memory follow a power
-/// of n. `say` is told of each trial that has to run.
+/// of n. `say` is called for each trial that has to run.
 std::vector<Cost> predict(const std::vector<Case>& cases,
                           Trials& trials,
                           const std::function<void(const Case&)>& say = {});

@@ -1,4 +1,4 @@
-/// A campaign on a cluster: its tasks in files, so that workers and whoever
+/// A campaign on a cluster: its tasks in files, so that workers and users who
 /// asks how it goes need nothing but a shared file system.
 ///
 ///   DIR/submission.json  the command, the tasks' cases and the jobs

@@ -13,7 +13,7 @@ namespace physinv {
 struct Case;
 
 /// What a short run says of one stage. Times are of the processor, so that
-/// whoever else is busy counts little.
+/// other load has little effect.
 struct StageTrial {
   double n = 0;        ///< samples of the trial
   double seconds = 0;  ///< of solving; of a stage that was cut, as its counted

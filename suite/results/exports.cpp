@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 bool is_error(const Json& entry) { return entry.contains("error_occurred"); }
 
 /// It failed, or most of its losses are not finite: a series of losses that
-/// ends alarms nobody.
+/// ends raises no alarm.
 bool alarms(const Json& entry) {
   return is_error(entry) || !entry.at("loss_median").is_number();
 }

@@ -1,7 +1,7 @@
 /// results.json for other programs. What failed, was skipped, diverged or was
 /// not run is an error in each of them, without a time: a series that ends, or
-/// falls to zero, alarms nobody. Where dashboards get losses, a median that is
-/// not finite is an error, too.
+/// falls to zero, raises no alarm. Where dashboards get losses, a median that
+/// is not finite is an error, too.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -133,7 +133,7 @@ struct Figure {
 /// that earlier runs of this suite or of independent programs showed.
 enum class Origin { paper, suite };
 
-/// What a claim came to. Where a condition fails, the claim's cause may tell
+/// The outcome of a claim. Where a condition fails, the claim's cause may tell
 /// more than that: `differs`, `depends` and `contradiction` are explained.
 enum class Verdict {
   reproduced,

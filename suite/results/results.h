@@ -39,7 +39,7 @@ class Results {
   std::vector<CaseRecord> cases_;
 };
 
-/// Of all stages that came to a result, by experiment.
+/// Of all stages with a result, by experiment.
 std::map<std::string, Counts> work_of(const Results& results);
 
 /// Everything a directory holds, in the order of its campaign. StoreError if

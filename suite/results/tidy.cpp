@@ -136,7 +136,7 @@ std::string cell(const TidyColumn& column, const TidyRow& row) {
   return std::visit(Cell{row}, column.value);
 }
 
-/// All examples of a stage; one row where nobody knows how many they are.
+/// All examples of a stage; one row where their number is not known.
 void add_stage(TidyRow r, const std::function<void(const TidyRow&)>& row) {
   if (r.info == nullptr) return row(r);
   for (Index i = 0; i < r.info->n; ++i) {

@@ -25,7 +25,7 @@ inline constexpr std::array kVerdicts{Verdict::reproduced,
                                       Verdict::reported};
 static_assert(kVerdicts.size() == kVerdictCount);
 
-/// How many claims came to each.
+/// How many claims have each.
 using VerdictCounts = std::array<int, kVerdictCount>;
 /// Those that a table of such counts has columns for: what always is there
 /// (reproduced, not reproduced, not judged, reported) and what occurs.

@@ -22,7 +22,7 @@ constexpr std::size_t kDigits = 16;
 constexpr int kLook = O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY;
 constexpr int kDirectory = O_RDONLY | O_DIRECTORY | O_CLOEXEC;
 
-/// Nobody can know it beforehand.
+/// It cannot be predicted.
 std::string new_name(std::string_view end) {
   std::uint64_t bits = 0;
   if (::getrandom(&bits, sizeof(bits), 0) != sizeof(bits))

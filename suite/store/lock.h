@@ -10,7 +10,7 @@
 namespace physinv {
 
 struct LockOptions {
-  /// Where only a file can stand for the lock: take it from whoever has it.
+  /// Where only a file can stand for the lock: take it from its owner.
   bool break_lock = false;
   /// Who we are; a test is somebody else.
   std::string host = {}, boot = {};

@@ -24,7 +24,7 @@ namespace physinv {
 
 struct PlannedCase {
   std::string name;
-  std::string recipe;  ///< hash, or empty if nobody compares it
+  std::string recipe;  ///< hash, or empty if it is not compared
 };
 
 /// A campaign, of which this store runs `cases`; all of it if `campaign` is

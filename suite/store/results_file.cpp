@@ -193,7 +193,7 @@ bool agrees(const Json& entry,
   return runs == known.end() || runs->second.contains(run);
 }
 
-/// Is it from before the plan was written, as a run under way leaves it?
+/// Is it from before the plan was written, as during a run?
 bool is_earlier(const Json& results, const nlohmann::json& plan) {
   return plan.is_object() && plan.contains("results") &&
          plan.at("results") == checksum_of(results);

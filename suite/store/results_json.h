@@ -2,7 +2,7 @@
 /// under "physinv". Described by reports/schema/results-2.schema.json.
 ///
 /// A stage that failed, was skipped or diverged has `error_occurred` and
-/// `error_message` and no time, losses or counters, so that nobody takes them
+/// `error_message` and no time, losses or counters, so that they are not taken
 /// for a gain.
 #pragma once
 

@@ -1,4 +1,4 @@
-/// The state of a stage under way, in a file of a campaign's directory:
+/// The state of a running stage, in a file of a campaign's directory:
 ///
 ///   checkpoints/<content key>   <8 hexadecimal digits: CRC-32C of the rest>
 ///                               <compact JSON>\n<bytes>

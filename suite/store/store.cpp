@@ -22,7 +22,7 @@ using nlohmann::json;
 constexpr const char *kCases = "cases", *kCheckpoints = "checkpoints",
                      *kResults = "results.json", *kPlan = "plan.json";
 
-/// What a store holds, and nothing else, if nobody writes to it.
+/// What a store holds, and nothing else, if no process writes to it.
 void remove_store(const Folder& beside, const std::string& name) {
   const auto store = beside.find(name);
   if (!store) return;

@@ -70,7 +70,7 @@ class Store {
   /// What commits took, most of its wall time waiting for the disk.
   Seconds commit_time() const { return commit_time_; }
 
-  /// The state of a stage under way; nothing if there is none. StoreError if
+  /// The state of a running stage; nothing if there is none. StoreError if
   /// it is damaged.
   std::optional<StageState> state(const std::string& key) const;
   /// Nothing is done if there is none.

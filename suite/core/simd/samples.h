@@ -1,6 +1,6 @@
 /// Columns of a batch as packs, a sample to a lane and a pack to a row
 /// (structure of arrays), and back. Kernels transpose blocks of columns into
-/// lanes, compute, and transpose back; nobody else sees the layout. Short
+/// lanes, compute, and transpose back; no other code sees the layout. Short
 /// blocks are padded.
 #pragma once
 

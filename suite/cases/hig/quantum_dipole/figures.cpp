@@ -121,7 +121,7 @@ Cell lowest_loss_of(const std::string& method, const Evidence& e) {
   return {.ours = m.value};
 }
 
-/// Of App. C: which tau is too small hangs on precision and projection, which
+/// Of App. C: which tau is too small depends on precision and projection, which
 /// are not printed (claim P10: far below 1e-5 the test loss stays above 0.1).
 Table tau_table(const Evidence& evidence) {
   Table table{

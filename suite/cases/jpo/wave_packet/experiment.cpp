@@ -1,5 +1,5 @@
 // JPO paper, Sec. 4 "Wave packet localization", Fig. 3, App. D.1: one unknown,
-// a loss full of minima, and noise that nobody can explain.
+// a loss full of minima, and noise that no parameter explains.
 #include <vector>
 
 #include "suite/cases/jpo/common/methods.h"

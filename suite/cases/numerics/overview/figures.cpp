@@ -35,7 +35,7 @@ const std::vector<Column> kColumns = {
      SweepCheck::adjoint_single,
      SweepStatus::inaccurate}};
 
-/// Every sweep of the campaign, whoever declared it.
+/// Every sweep of the campaign, of all experiments.
 Table side_by_side(const Evidence& e) {
   Table table{
       .id = "atlas",

@@ -1,4 +1,4 @@
-/// What a record's own problems say of the sine, whoever solved them.
+/// Properties of the sine problems of a record, for any method.
 #pragma once
 
 #include "problems/sine_plane/sine_plane.h"
