@@ -61,10 +61,12 @@ class Iterates final : public ceres::IterationCallback {
   const Vector<double>& x_;
 };
 
-Status status_of(ceres::TerminationType type) {
-  switch (type) {
+/// Which tolerance was reached is only in the message.
+Status status_of(const ceres::GradientProblemSolver::Summary& summary) {
+  switch (summary.termination_type) {
     case ceres::CONVERGENCE:
-      return Status::gtol;
+      return summary.message.starts_with("Function tolerance") ? Status::ftol
+                                                               : Status::gtol;
     case ceres::NO_CONVERGENCE:
       return Status::maxiter;
     default:
@@ -97,8 +99,8 @@ LibraryEnd minimize(CeresDirection direction,
   ceres::GradientProblemSolver::Summary summary;
   ceres::Solve(options, problem, end.x.data(), &summary);
   end.loss = summary.final_cost;
-  end.status = status_of(summary.termination_type);
-  end.success = end.status == Status::gtol;
+  end.status = status_of(summary);
+  end.success = physinv::converged(end.status);
   end.message = words_of(summary);
   return end;
 }

@@ -74,7 +74,7 @@ LibraryEnd minimize(const Task& task,
                                            column(task.upper));
   return {.x = Eigen::Map<const Vector<double>>(&x(0), x0.size()),
           .loss = loss,
-          .status = converged ? Status::gtol : Status::maxiter,
+          .status = converged ? Status::ftol : Status::maxiter,
           .success = converged,
           .message = converged ? "change of the loss below min_delta"
                                : "limit of iterations"};

@@ -61,6 +61,7 @@ struct Call {
 Status status_of(nlopt_result result) {
   if (result == NLOPT_MAXEVAL_REACHED || result == NLOPT_MAXTIME_REACHED)
     return Status::maxiter;
+  if (result == NLOPT_FTOL_REACHED) return Status::ftol;
   return result > 0 ? Status::gtol : Status::linesearch;
 }
 
@@ -92,7 +93,7 @@ LibraryEnd minimize(Kind kind,
   if (result == NLOPT_INVALID_ARGS)  // it evaluated nothing
     end.loss = std::numeric_limits<double>::quiet_NaN();
   end.status = status_of(result);
-  end.success = end.status == Status::gtol;
+  end.success = physinv::converged(end.status);
   end.message = nlopt_result_to_string(result);
   return end;
 }

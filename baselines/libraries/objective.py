@@ -40,7 +40,7 @@ class Objective:
         at, left = self.seen.get(x.tobytes(), (np.nan, np.nan))
         lowest = min((one for one, _ in self.seen.values() if one == one),
                      default=np.nan)
-        arrays = {"claims_success": status == "gtol",
+        arrays = {"claims_success": status in ("gtol", "ftol"),
                   "returned_not_best": at > lowest,
                   "false_loss": at == at and loss == loss and loss != at,
                   "gradient_left": left}

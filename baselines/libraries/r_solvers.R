@@ -31,10 +31,15 @@ slope <- function(x) evaluate(as.numeric(x))[-1]
 of_optim <- function(end)
   list(x = end$par, loss = end$value, message = end$message,
        status = switch(as.character(end$convergence),
-                       "0" = "gtol", "1" = "maxiter", "linesearch"))
+                       "0" = if (grepl("GRADIENT", paste("", end$message)))
+                               "gtol"
+                             else "ftol",  # BFGS tests nothing else
+                       "1" = "maxiter", "linesearch"))
 of_nlminb <- function(end)
   list(x = end$par, loss = end$objective, message = end$message,
-       status = if (end$convergence == 0) "gtol"
+       status = if (end$convergence == 0)
+                  if (grepl("relative|function", end$message)) "ftol"
+                  else "gtol"
                 else if (grepl("limit", end$message)) "maxiter"
                 else "linesearch")
 of_ucminf <- function(end)

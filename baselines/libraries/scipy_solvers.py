@@ -27,7 +27,14 @@ LIMITS = {"billiards": 1000, "wave-packet": 1000, "robotic-arm": 1000,
 _STATUS = {"BFGS": {0: "gtol", 1: "maxiter"},
            "L-BFGS-B": {0: "gtol", 1: "maxiter"},
            "SLSQP": {0: "gtol", 9: "maxiter"},
-           "TNC": {0: "gtol", 1: "gtol", 2: "gtol", 3: "maxiter"}}
+           "TNC": {0: "gtol", 1: "ftol", 2: "gtol", 3: "maxiter"}}
+
+
+def status_of(method, end):
+    """Which tolerance L-BFGS-B reached is only in its message."""
+    if method == "L-BFGS-B" and end.message.startswith("CONVERGENCE: REL"):
+        return "ftol"
+    return _STATUS[method].get(int(end.status), "linesearch")
 
 
 def _solve_one(run, i, method, boxed):
@@ -38,8 +45,7 @@ def _solve_one(run, i, method, boxed):
     end = minimize(objective, run.start[i], jac=True, method=method,
                    callback=objective.accept, options=options,
                    bounds=objective.box and list(zip(*objective.box)))
-    ended = _STATUS[method].get(int(end.status), "linesearch")
-    return objective.end(end.x, end.fun, ended, end.message)
+    return objective.end(end.x, end.fun, status_of(method, end), end.message)
 
 
 def _solve(run, method, boxed=False):

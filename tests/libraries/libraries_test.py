@@ -48,6 +48,13 @@ def stages(folder, landscapes=False):
                 if ("/landscape-" in s["name"]) == landscapes]
 
 
+def said(stage, words):
+    """On how many problems a library's message begins with one of these."""
+    found = re.compile(rf"(\d+) x (?:{words})")
+    ends = map(found.match, stage["physinv"]["message"].split("; "))
+    return sum(int(end[1]) for end in ends if end)
+
+
 def table(folder, experiment, name):
     with open(f"{folder}/report/{experiment}/tables/{name}.csv") as f:
         return list(csv.DictReader(f))
@@ -109,24 +116,35 @@ class Libraries(unittest.TestCase):
 
     def test_ends_are_counted(self):
         """As often as the libraries say it in their own words."""
-        success = re.compile(r"(\d+) x (?:success$|SUCCESS|[FX]TOL_REACHED|"
-                             r"CONVERGENCE|change of the loss below)")
-        said = collections.Counter()
+        successes = collections.Counter()
         for s in stages(RESULTS):
             experiment, method = s["name"].split("/")[1:3]
-            for words in s["physinv"]["message"].split("; "):
-                told = success.match(words)
-                said[experiment, method] += int(told[1]) if told else 0
-        for problem in sorted({p for p, _ in said}):
+            successes[experiment, method] += said(
+                s, r"success$|SUCCESS|[FX]TOL_REACHED|CONVERGENCE|"
+                "change of the loss below")
+        for problem in sorted({p for p, _ in successes}):
             rows = {r["method"]: r for r in
                     table(RESULTS, "libraries-" + problem, "ends")}
             self.assertEqual(len(rows), METHODS)
             for method in set(rows) - OURS:
                 self.assertEqual(int(rows[method]["claims success"]),
-                                 said[problem, method], (problem, method))
+                                 successes[problem, method],
+                                 (problem, method))
                 self.assertLessEqual(int(rows[method]["gradient left"]),
-                                     said[problem, method])
-        self.assertGreater(sum(said.values()), 0)
+                                     successes[problem, method])
+        self.assertGreater(sum(successes.values()), 0)
+
+    def test_success_by_the_change_of_the_loss_is_ftol(self):
+        words = "FTOL_REACHED|CONVERGENCE, Function|change of the loss below"
+        libraries = collections.Counter()
+        for s in stages(RESULTS) + stages(RESULTS, landscapes=True):
+            if "library" in s["physinv"]["options"]:
+                ftol = s["physinv"]["statuses"]["ftol"]
+                self.assertEqual(ftol, said(s, words), s["name"])
+                libraries[s["name"].split("/")[2].split("-")[0]] += ftol
+        for library in ("ceres", "dlib"):
+            self.assertGreater(libraries[library], 0, library)
+        self.assertEqual(libraries["gsl"], 0)
 
     def test_landscapes(self):
         """Whatever a library does on them is a result."""
@@ -185,14 +203,24 @@ class Libraries(unittest.TestCase):
             SOURCES + "/baselines/libraries/scipy_solvers.py", PLUGIN, "smoke",
             *flags)
 
-    def test_scipy_ends_as_our_port(self):
+    def test_scipy_and_r_end_as_they_say(self):
         self.needs_scipy()
         out = WORK + "/scipy"
         self.with_scipy("out=" + out, "no_report=true",
-                        "filter=^libraries/(billiards|wave-packet|robotic-arm)/"
-                        "(bfgs|scipy-[a-z]*)/")
+                        "filter=^libraries/(billiards/r-[a-z]*|"
+                        "(billiards|wave-packet|robotic-arm)/"
+                        "(bfgs|scipy-[a-z]*))/")
         ends = {tuple(s["name"].split("/")[1:3]): s for s in stages(out)}
-        self.assertEqual(len(ends), 3 * 5)
+        self.assertEqual(len([m for _, m in ends if "r-" not in m]), 3 * 5)
+        for (problem, method), s in ends.items():
+            ftol = s["physinv"]["statuses"]["ftol"]
+            if method == "r-bfgs":  # it tests nothing else and says nothing
+                self.assertGreater(ftol, 0)
+            elif method != "bfgs":
+                self.assertEqual(
+                    ftol, said(s, r"CONVERGENCE: REL|Converged \(\|f|"
+                               "relative conv|both X|absolute function"),
+                    (problem, method))
         for problem in ("billiards", "wave-packet", "robotic-arm"):
             ours, theirs = ends[problem, "bfgs"], ends[problem, "scipy-bfgs"]
             self.assertAlmostEqual(
