@@ -178,8 +178,24 @@ void NetworkModel<T>::warm_up() {
 
 template <class T>
 void NetworkModel<T>::predict(BatchIn<T> input, BatchOut<T> output) {
-  network_->forward(
-      parameters_, state_, input, output, prediction_tape_, prediction_work_);
+  // Between updates nobody reads what a minibatch has left on its tape. A bound
+  // input stays there, and larger batches would make the tape grow.
+  const bool bound = input_.size() > 0;
+  const bool shared = !bound && input.cols() <= output_.cols();
+  const Counts counts = work_.counts;
+  network_->forward(parameters_,
+                    state_,
+                    input,
+                    output,
+                    shared ? tape_ : prediction_tape_,
+                    shared ? work_ : prediction_work_);
+  work_.counts = counts;
+  // Before the first update, perhaps the only pass that needs memory of its
+  // own.
+  if (!bound && output_.cols() == 0) {
+    prediction_tape_ = Tape();
+    prediction_work_ = Workspace(work_.threads());
+  }
 }
 
 template <class T>

@@ -63,7 +63,8 @@ class NetworkModel {
   void warm_up();
 
   /// Outputs for any input, with running statistics; not part of the method's
-  /// counted work.
+  /// counted work. The last `forward` of a minibatch cannot be pulled back
+  /// afterwards.
   void predict(BatchIn<T> input, BatchOut<T> output);
 
   /// After `warm_up`, if the input is bound.

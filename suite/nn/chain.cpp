@@ -15,8 +15,8 @@ Chain<T>::Chain(Layers<T> layers)
   for (const auto& layer : layers_) {
     SUITE_CHECK(layer->inputs() == size,
                 "a layer's inputs must match the outputs of the layer before");
+    widest_pair_ = std::max(widest_pair_, size + layer->outputs());
     size = layer->outputs();
-    widest_ = std::max({widest_, layer->inputs(), size});
     places_.push_back({parameter_count_, state_count_, slots_});
     for (const TensorInfo& t : layer->tensors()) parameter_count_ += t.size;
     state_count_ += layer->state_count();

@@ -27,7 +27,8 @@ class Chain {
   const Layer<T>& operator[](std::size_t i) const { return *layers_[i]; }
   Index inputs() const { return layers_.front()->inputs(); }
   Index outputs() const { return layers_.back()->outputs(); }
-  Index widest() const { return widest_; }
+  /// Most features of a layer's input and output together.
+  Index widest_pair() const { return widest_pair_; }
   Index parameter_count() const { return parameter_count_; }
   Index state_count() const { return state_count_; }
   /// Of the outputs, then of the layers themselves.
@@ -150,30 +151,35 @@ class Chain {
 
   Layers<T> layers_;
   std::vector<Place> places_;
-  Index parameter_count_ = 0, state_count_ = 0, widest_ = 0;
+  Index parameter_count_ = 0, state_count_ = 0, widest_pair_ = 0;
   std::size_t slots_ = 0, prefix_ = 0;
 };
 
-/// Memory of cotangents on their way down a chain, two arrays in turn: (i) is
-/// the cotangent of the input of layer i, (size()) that of the output.
+/// Memory of cotangents on their way down a chain: (i) is the cotangent of the
+/// input of layer i, (size()) that of the output. A step back needs those of
+/// one layer, so that they lie at the two ends of one array in turn.
 template <class T>
 class Bars {
  public:
   Bars(const Chain<T>& chain, Index samples, Workspace& work)
       : chain_(chain), samples_(samples) {
-    for (T*& some : arrays_)
-      some = take_rows<T>(work, chain.widest(), samples).data;
+    const Rows<T> rows(nullptr, chain.widest_pair(), samples);
+    size_ = round_up(rows.rows * rows.stride, kLine) + kLine;
+    data_ = work.take<T>(size_, 1).data();
   }
   Rows<T> operator()(std::size_t i) const {
     const bool last = i == chain_.size();
-    return {
-        arrays_[i % 2], last ? chain_.outputs() : chain_[i].inputs(), samples_};
+    Rows<T> bar(data_, last ? chain_.outputs() : chain_[i].inputs(), samples_);
+    if (i % 2 != 0) bar.data += size_ - round_up(bar.rows * bar.stride, kLine);
+    return bar;
   }
 
  private:
+  static constexpr Index kLine = kAlignment / sizeof(T);
+
   const Chain<T>& chain_;
-  Index samples_;
-  T* arrays_[2];
+  Index samples_, size_;
+  T* data_;
 };
 
 }  // namespace physinv::nn

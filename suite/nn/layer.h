@@ -141,6 +141,9 @@ class Layer {
   /// Tape slots it needs beside its input and output.
   virtual std::size_t slots() const { return 0; }
 
+  /// Whether `backward`, `tangent` and its reverse read y. If not, a layer
+  /// around this one need not keep it.
+  virtual bool reads_output() const { return true; }
   /// Not null if the layer is nothing but this activation.
   virtual const Activation* pure_activation() const { return nullptr; }
   /// Takes a following activation into its own store, if it can.

@@ -174,6 +174,8 @@ class Upsample final : public PiecewiseLinear<T> {
     check_axis(from.rows, to.rows);
   }
 
+  bool reads_output() const override { return false; }
+
   void forward(const Run<T>& at, Rows<const T> x, Rows<T> y) const override {
     const auto row = [&](Index r, Index c, Index channel, Index j) {
       return load<V<T>>(x.row((r * grid_.columns + c) * channels_ + channel) +

@@ -26,7 +26,8 @@ class Skip final : public Layer<T> {
         positions_(positions),
         own_(inner.inputs() / positions),
         more_(inner.outputs() / positions),
-        inner_(std::move(inner)) {
+        inner_(std::move(inner)),
+        keeps_last_(inner_[inner_.size() - 1].reads_output()) {
     SUITE_CHECK(inner_.inputs() == own_ * positions &&
                     inner_.outputs() == more_ * positions,
                 "a skip connection needs fields on one grid");
@@ -39,10 +40,16 @@ class Skip final : public Layer<T> {
   }
   std::size_t slots() const override { return inner_.slots(); }
   void forward(const Run<T>& at, Rows<const T> x, Rows<T> y) const override {
+    const std::size_t end = inner_.size() - 1;
+    const auto outputs = inner_.opened(*at.tape, at.slot, x.samples);
+    const Workspace::Scope scope(*at.work);
+    const Rows<T> last =
+        keeps_last_ ? outputs(end)
+                    : take_rows<T>(*at.work, inner_.outputs(), x.samples);
     copy(at, x, own_, y, all(), own_);
-    inner_.forward(
-        at, x, 0, inner_.size(), inner_.opened(*at.tape, at.slot, x.samples));
-    const Rows<T> last = outputs(*at.tape, at, x.samples)(inner_.size() - 1);
+    inner_.forward(at, x, 0, end + 1, [&](std::size_t i) {
+      return i < end ? outputs(i) : last;
+    });
     copy(at, last, more_, from_row(y, own_), all(), more_);
   }
 
@@ -50,25 +57,28 @@ class Skip final : public Layer<T> {
     using V = NarrowPack<T>;
     const Workspace::Scope scope(*at.work);
     const Bars<T> bars(inner_, b.x.samples, *at.work);
-    const Rows<T> y_bar = bars(inner_.size()), part = bars(0);
+    const Rows<T> y_bar = bars(inner_.size());
     copy(at, from_row(b.y_bar, own_), all(), y_bar, more_, more_);
     inner_.backward(at,
                     {.x = b.x,
                      .y_bar = y_bar,
                      .parameters_bar = b.parameters_bar,
-                     .x_bar = b.x_bar ? part : b.x_bar},
+                     .x_bar = b.x_bar},
                     0,
-                    outputs(*at.tape, at, b.x.samples),
+                    kept(*at.tape, at, b.x.samples),
                     bars);
     if (!b.x_bar) return;
-    for_rows(at, positions_, own_ * part.stride, [&](Index begin, Index end) {
-      for (Index p = begin; p < end; ++p)
-        for (Index c = 0; c < own_; ++c)
-          for (Index j = 0; j < b.x_bar.width; j += kNarrowLanes<T>)
-            store(b.x_bar.row(p * own_ + c) + j,
-                  load<V>(b.y_bar.row(p * all() + c) + j) +
-                      load<V>(part.row(p * own_ + c) + j));
-    });
+    for_rows(
+        at, positions_, own_ * b.x_bar.stride, [&](Index begin, Index end) {
+          for (Index p = begin; p < end; ++p)
+            for (Index c = 0; c < own_; ++c) {
+              T* const to = b.x_bar.row(p * own_ + c);
+              for (Index j = 0; j < b.x_bar.width; j += kNarrowLanes<T>)
+                store(
+                    to + j,
+                    load<V>(b.y_bar.row(p * all() + c) + j) + load<V>(to + j));
+            }
+        });
     apply_gate(b.gate, b.x_bar);
   }
 
@@ -82,9 +92,9 @@ class Skip final : public Layer<T> {
                     .dots = t.dots},
                    0,
                    inner_.size(),
-                   outputs(*at.tape, at, n),
+                   kept(*at.tape, at, n),
                    inner_.opened(*t.dots, at.slot, n));
-    const Rows<T> last = outputs(*t.dots, at, n)(inner_.size() - 1);
+    const Rows<T> last = inner_.kept(*t.dots, at.slot, n)(inner_.size() - 1);
     copy(at, last, more_, from_row(t.y_dot, own_), all(), more_);
   }
 
@@ -104,8 +114,8 @@ class Skip final : public Layer<T> {
     inner_.backward_tangent(at,
                             inner,
                             0,
-                            outputs(*at.tape, at, n),
-                            outputs(*b.dots, at, n),
+                            kept(*at.tape, at, n),
+                            kept(*b.dots, at, n),
                             bars,
                             bars_dot);
     if (!b.x_bar) return;
@@ -126,8 +136,11 @@ class Skip final : public Layer<T> {
 
  private:
   Index all() const { return own_ + more_; }
-  auto outputs(const Tape& tape, const Replay<T>& at, Index samples) const {
-    return inner_.kept(tape, at.slot, samples);
+  /// y on a tape. What the last layer does not read again was never there.
+  auto kept(const Tape& tape, const Replay<T>& at, Index samples) const {
+    return [this, y = inner_.kept(tape, at.slot, samples)](std::size_t i) {
+      return i + 1 < inner_.size() || keeps_last_ ? y(i) : Rows<T>{};
+    };
   }
   /// `count` rows of every position, from and to fields of different width.
   void copy(const Replay<T>& at,
@@ -146,6 +159,7 @@ class Skip final : public Layer<T> {
   Index positions_;
   Index own_, more_;  ///< channels of x, and of what `inner` makes of it
   Chain<T> inner_;
+  bool keeps_last_;
 };
 
 }  // namespace
