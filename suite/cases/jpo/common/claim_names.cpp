@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "suite/evidence/means.h"
+
 namespace physinv::jpo {
 namespace {
 

@@ -374,26 +374,4 @@ std::vector<Condition> table3(Index seeds, bool from_prior) {
       "probability of such differences from Table 3", std::move(means), seeds);
 }
 
-Quantity growth_in_errors(const Select& a,
-                          const Select& b,
-                          const RunValue& value) {
-  return {[=](const Evidence& e) {
-            std::map<std::uint64_t, double> before;
-            for (const Sample& s : sample(e, b, value))
-              before[s.seed] = s.value;
-            std::vector<double> differences;
-            for (const Sample& s : sample(e, a, value))
-              if (const auto at = before.find(s.seed); at != before.end())
-                differences.push_back(s.value - at->second);
-            const auto found = mean_std(differences);
-            if (!found) return missing(a.text() + " not run");
-            if (!found->std) return missing("two seeds");
-            const auto runs = static_cast<double>(differences.size());
-            return Measured{
-                .value = found->mean / (*found->std / std::sqrt(runs)),
-                .runs = static_cast<Index>(differences.size())};
-          },
-          {a, b}};
-}
-
 }  // namespace physinv::jpo

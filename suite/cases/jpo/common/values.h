@@ -120,10 +120,4 @@ std::vector<Condition> table5(const std::string& method, Index seeds);
 /// Table 3 at n = 4, 8, 32, 128, all together.
 std::vector<Condition> table3(Index seeds, bool from_prior = false);
 
-/// Of the differences that `a` has from `b` on the same seed: their mean over
-/// its standard error.
-Quantity growth_in_errors(const Select& a,
-                          const Select& b,
-                          const RunValue& value);
-
 }  // namespace physinv::jpo

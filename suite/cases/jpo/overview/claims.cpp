@@ -6,39 +6,11 @@
 #include <vector>
 
 #include "suite/cases/jpo/common/claim_names.h"
-#include "suite/core/math.h"
+#include "suite/evidence/means.h"
 #include "suite/harness/networks.h"
 
 namespace physinv::jpo::overview {
 namespace {
-
-std::vector<Select> runs_of(const std::vector<Quantity>& all) {
-  std::vector<Select> runs;
-  for (const Quantity& q : all)
-    runs.insert(runs.end(), q.runs().begin(), q.runs().end());
-  return runs;
-}
-
-/// The mean of one number of each experiment. Its spread is that of one of as
-/// many seeds as the fewest have, with the error that all together leave.
-Quantity mean_of_all(const std::vector<Quantity>& all) {
-  return {[all](const Evidence& evidence) {
-            Measured sum{
-                .value = 0, .spread = 0, .runs = kEvery, .missing = {}};
-            for (const Quantity& q : all) {
-              const Measured one = q(evidence);
-              if (!one.value) return one;
-              *sum.value += *one.value / double(all.size());
-              const double s = one.spread.value_or(0) / double(all.size());
-              sum.spread = math::hypot(
-                  *sum.spread, s / std::sqrt(static_cast<double>(one.runs)));
-              sum.runs = std::min(sum.runs, one.runs);
-            }
-            *sum.spread *= std::sqrt(static_cast<double>(sum.runs));
-            return sum;
-          },
-          runs_of(all)};
-}
 
 /// The tenth of its problems with JPO's highest losses (at least one) solved
 /// by BFGS instead: mean loss over that without.
