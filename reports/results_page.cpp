@@ -128,7 +128,22 @@ std::string table_of(const Papers& papers,
          rows;
 }
 
-/// The paper's question, and its main statements with what was measured.
+/// Of a study, a number of each setting: "SciPy 75.3 ± 4.03 (> 50)".
+std::string every_measured(const ClaimResult& claim) {
+  std::string out;
+  for (const ConditionResult& c : claim.conditions) {
+    if (!c.value || c.bounds.empty()) continue;
+    out += fmt::format(
+        "{}{} {}", out.empty() ? "" : ", ", c.text(), value_text(*c.value));
+    if (c.spread) out += " ± " + value_text(*c.spread);
+    out +=
+        fmt::format(" ({}{})", c.bounds, c.holds.value_or(true) ? "" : ": no");
+  }
+  return markdown(out.empty() ? "not run" : out);
+}
+
+/// The paper's question, and its main statements with what was measured; each
+/// study of one is a line of a list.
 std::string answer(const Publication& paper,
                    const LatestClaims& claims,
                    const ResultsLinks& links) {
@@ -136,19 +151,22 @@ std::string answer(const Publication& paper,
                                 markdown(paper.title),
                                 markdown(paper.key),
                                 markdown(paper.question));
-  for (const auto& [experiment, id] : paper.main_claims) {
-    const auto found = claims.find({experiment, id});
+  std::string studies;
+  for (const ClaimKey key : paper.main_claims) {
+    const auto found = claims.find(key);
     if (found == claims.end()) continue;
     const ClaimResult& claim = found->second.claim;
-    out +=
-        fmt::format(" {}: **{} {}**, {}, {}.",
-                    markdown(claim.says),
-                    mark_of(claim.verdict),
-                    words_of(claim.verdict),
-                    measured(claim),
-                    page_link(experiment, experiment + ' ' + id, links.pages));
+    const bool of_study = is_study(key);
+    (of_study ? studies : out) += fmt::format(
+        "{}{}: **{} {}**, {}, {}.",
+        of_study ? "\n- " : " ",
+        markdown(claim.says),
+        mark_of(claim.verdict),
+        words_of(claim.verdict),
+        of_study ? every_measured(claim) : measured(claim),
+        page_link(key.first, key.first + ' ' + key.second, links.pages));
   }
-  return out + '\n';
+  return out + '\n' + (studies.empty() ? "" : studies + '\n');
 }
 
 std::string answers(const Papers& papers,

@@ -275,6 +275,31 @@ TEST(Digest, StudiesStandInAParagraph) {
   EXPECT_EQ(page.find("| [studies/"), page.npos) << page;
 }
 
+TEST(Digest, AStudyOfAMainStatementHasALineWithEverySetting) {
+  Section study = section(Verdict::depends, Verdict::reproduced);
+  study.experiment = "studies/a-choice";
+  auto& conditions = study.claims[0].conditions;
+  conditions = {{.label = "A", .bounds = "> 50", .value = 75, .holds = true},
+                {.label = "B",
+                 .bounds = "> 50",
+                 .value = 42,
+                 .spread = 3,
+                 .holds = false},
+                {.label = "C", .bounds = "> 50", .missing = "not run"},
+                {.label = "D", .bounds = "", .value = 7}};
+  const std::string page = results_markdown(
+      {{"a", digest_json({section(Verdict::reproduced, {}), study}, origin())}},
+      {{.key = "jpo",
+        .title = "A title",
+        .question = "Does it?",
+        .main_claims = {{"studies/a-choice", "P1"}, {"jpo/toy", "P1"}}}});
+  expect_words(
+      page,
+      {"[jpo/toy P1](docs/results/jpo-toy.md).\n\n- a \\| b: **? "
+       "depends**, A 75 (> 50), B 42 ± 3 (> 50: no), [studies/a-choice "
+       "P1](docs/results/studies-a-choice.md).\n"});
+}
+
 TEST(Digest, PagesTellWorkMadeAndSaved) {
   auto run = named("a", Verdict::reproduced, Verdict::reproduced);
   EXPECT_EQ(experiment_pages({run}).begin()->second.find("Work:"),
