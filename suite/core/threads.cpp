@@ -63,8 +63,14 @@ struct Threads::Pool {
   std::atomic<int> generation{0};  // one more for every run
   std::atomic<int> inside{kClosed};
   std::atomic<bool> stop{false};
-  std::atomic<Index> next{0};
-  Index blocks = 0;
+  /// A thread's own blocks, in order: in the next run of as many blocks it has
+  /// them again, and their data. Who has none left helps the others.
+  struct alignas(64) Share {
+    std::atomic<Index> next{0};
+    Index end = 0;
+  };
+
+  std::vector<Share> shares;
   Call call = nullptr;
   void* body = nullptr;
   std::mutex mutex;
@@ -77,6 +83,8 @@ struct Threads::Pool {
     for (std::thread& t : workers) t.join();
   }
 
+  explicit Pool(int count) : shares(static_cast<std::size_t>(count)) {}
+
   void start(int count) {
     workers.reserve(static_cast<std::size_t>(count - 1));
     for (int t = 1; t < count; ++t)
@@ -84,13 +92,22 @@ struct Threads::Pool {
   }
 
   void work(int thread) {
-    for (Index b; (b = next.fetch_add(1)) < blocks;) {
-      try {
-        call(body, b, thread);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        if (!error) error = std::current_exception();
+    const auto own = static_cast<std::size_t>(thread);
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      Share& share = shares[(own + k) % shares.size()];
+      while (share.next.load(std::memory_order_relaxed) < share.end) {
+        const Index b = share.next.fetch_add(1);
+        if (b < share.end) work_on(b, thread);
       }
+    }
+  }
+
+  void work_on(Index block, int thread) {
+    try {
+      call(body, block, thread);
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!error) error = std::current_exception();
     }
   }
 
@@ -114,8 +131,13 @@ struct Threads::Pool {
     return false;
   }
 
-  void open() {
-    next = 0;
+  void open(Index blocks) {
+    const auto count = static_cast<Index>(shares.size());
+    for (Index t = 0; t < count; ++t) {
+      Share& share = shares[static_cast<std::size_t>(t)];
+      share.next = blocks * t / count;
+      share.end = blocks * (t + 1) / count;
+    }
     inside = 0;
     start_generation();
   }
@@ -135,7 +157,7 @@ struct Threads::Pool {
 Threads::Threads(int count) : count_(count) {
   SUITE_CHECK(count >= 1, "the number of threads must be at least 1");
   if (count == 1) return;
-  pool_ = std::make_unique<Pool>();
+  pool_ = std::make_unique<Pool>(count);
   try {
     pool_->start(count);
   } catch (const std::system_error& error) {
@@ -155,8 +177,8 @@ void Threads::run(Index blocks, Call call, void* body) {
     return;
   }
   Pool& p = *pool_;
-  p.blocks = blocks, p.call = call, p.body = body, p.error = nullptr;
-  p.open();
+  p.call = call, p.body = body, p.error = nullptr;
+  p.open(blocks);
   p.work(0);
   p.close();
   if (p.error) std::rethrow_exception(p.error);
