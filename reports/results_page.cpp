@@ -288,10 +288,10 @@ std::string results_markdown(const std::vector<NamedDigest>& campaigns,
     return fmt::format(
                "# Results\n\n{} from the numbers that the campaigns under "
                "`reports/campaigns` stored. [Verdicts](docs/verdicts.md) "
-               "defines the words. The newest campaign that decided a "
-               "statement counts, unless an older one ran more cases for it. "
-               "A row shows the first condition that is not met, or the first "
-               "one; the page behind the link has all of them. "
+               "defines the words. Each verdict comes from the newest campaign "
+               "that decides it, or from an older one with more cases. A row "
+               "shows the first condition that is not met, or, if all are "
+               "met, the first one; the linked page has all of them. "
                "[Regression checks]({}/{}) are listed separately.\n",
                kWrittenByResults,
                links.pages,

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <re2/re2.h>
 
 #include <map>
 #include <nlohmann/json.hpp>
@@ -96,6 +97,12 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
+/// A cause names its numbers in braces; here nothing was measured.
+std::string without_numbers(std::string cause) {
+  RE2::GlobalReplace(&cause, R"(\{[^}]*\})", "...");
+  return cause;
+}
+
 std::string chain_text(const Method& method) {
   std::string text;
   for (const auto& stage : method.chain)
@@ -135,8 +142,9 @@ void print_claims(const std::string& of, const std::vector<Claim>& claims) {
                escaped(conditions_text(c)),
                c.cause.why.empty()
                    ? ""
-                   : fmt::format(
-                         "{}: {}", words_of(c.cause.as), escaped(c.cause.why)));
+                   : fmt::format("{}: {}",
+                                 words_of(c.cause.as),
+                                 escaped(without_numbers(c.cause.why))));
   }
 }
 

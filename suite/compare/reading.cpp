@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "suite/evidence/convergence_history.h"
 #include "suite/evidence/statistics.h"
 #include "suite/results/crowded.h"
 #include "suite/results/loss_summary.h"
@@ -76,13 +77,7 @@ bool Times::of_one_core() const {
          (threads == 0 && cpu.median <= wall.median + kClockResolution);
 }
 
-double Reading::simulations() const {
-  double sum = 0;
-  for (const Counter c :
-       {Counter::forward, Counter::vjp, Counter::jacobian, Counter::inverse})
-    sum += static_cast<double>(counts[c]);
-  return sum;
-}
+double Reading::simulations() const { return simulations_of(counts); }
 
 double Reading::passes() const {
   return static_cast<double>(counts[Counter::network_forward] +

@@ -28,6 +28,7 @@ std::vector<Index> some_of(const std::vector<Index>& sizes) {
 /// Mean losses over what was spent: simulations per problem, or seconds.
 struct MeanCurve {
   std::vector<double> spent, loss;
+  bool spread = false;  ///< see ConvergenceHistory
   /// At the last point up to there; empty before the first.
   std::optional<double> at(double x) const {
     const auto after = std::upper_bound(spent.begin(), spent.end(), x);
@@ -39,7 +40,7 @@ struct MeanCurve {
 using Curves = std::vector<std::pair<std::string, std::vector<MeanCurve>>>;
 
 MeanCurve curve_of(const ConvergenceHistory& history, Index n, bool seconds) {
-  MeanCurve curve;
+  MeanCurve curve{.spread = !seconds && history.spread};
   for (std::size_t k = 0; k < history.loss.size(); ++k) {
     // A run that is judged by a mean is one problem.
     const Index problems = history.loss[k].size();
@@ -111,11 +112,12 @@ Curves curves_of(const Results& results,
 }
 
 /// Are simulations counted along any curve, to its middle? Problems of a
-/// formula have none, and training by samples knows its sum only.
+/// formula have none, and a training counts them only at its end.
 bool simulate(const Curves& all) {
   return std::ranges::any_of(all, [](const auto& method) {
     return std::ranges::any_of(method.second, [](const MeanCurve& curve) {
-      return !curve.spent.empty() && curve.spent[curve.spent.size() / 2] > 1;
+      return !curve.spread && !curve.spent.empty() &&
+             curve.spent[curve.spent.size() / 2] > 1;
     });
   });
 }
@@ -176,7 +178,8 @@ Figure learning_curves(const Results& results,
                 .note =
                     "Mean over problems, median over seeds, band: 10 % and 90 "
                     "% quantiles. All stages of a method, also refinement; "
-                    "simulations include gradients. Where a method learns from "
+                    "simulations include gradients, Jacobians and inverses. "
+                    "Where a method learns from "
                     "samples before its first simulation, its curve begins at "
                     "1. Seconds where nothing is simulated."};
   for (const Index n : some_of(results.sizes(experiment))) {

@@ -10,11 +10,10 @@
 #include "suite/evidence/bare_numbers.h"
 #include "suite/evidence/claim_conditions.h"
 #include "suite/evidence/claim_tokens.h"
+#include "suite/results/verdict_words.h"
 
 namespace physinv {
 namespace {
-
-constexpr std::string_view kNumberNotRun = "(not run)";
 
 /// Reads the inside of braces from left to right.
 class Inside {

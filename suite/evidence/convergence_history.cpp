@@ -8,11 +8,6 @@
 namespace physinv {
 namespace {
 
-double simulations_of(const StageRecord& s) {
-  return static_cast<double>(s.counts[Counter::forward] +
-                             s.counts[Counter::vjp]);
-}
-
 void add_point(ConvergenceHistory& history,
                double seconds,
                double simulations,
@@ -29,10 +24,27 @@ const Batch<double>* mean_of(const StageRecord& s) {
   return some && mean != s.arrays.end() ? &mean->second : nullptr;
 }
 
+/// Simulations up to each point of a stage. A training counts them only at its
+/// end; each of its updates takes as many.
+std::vector<double> simulations_along(const StageRecord& s) {
+  const Curve& curve = s.curve;
+  const bool at_end_only = !curve.evaluations.empty() &&
+                           curve.evaluations.back() == 0 && s.iterations > 0;
+  if (!at_end_only) return curve.evaluations;
+  const double each =
+      simulations_of(s.counts) / static_cast<double>(s.iterations);
+  std::vector<double> spent;
+  for (const double iteration : curve.iteration)
+    spent.push_back(each * iteration);
+  return spent;
+}
+
 /// The points of a stage behind those before it.
 void add_points(ConvergenceHistory& history, const StageRecord& s) {
   const double seconds = *history.all_seconds,
                simulations = *history.all_simulations;
+  const std::vector<double> along = simulations_along(s);
+  history.spread |= along != s.curve.evaluations;
   const Batch<double>* mean = mean_of(s);
   const Index points = mean == nullptr
                            ? s.curve.points()
@@ -41,12 +53,12 @@ void add_points(ConvergenceHistory& history, const StageRecord& s) {
     const auto at = static_cast<std::size_t>(k);
     add_point(history,
               seconds + s.curve.seconds[at],
-              simulations + s.curve.evaluations[at],
+              simulations + along[at],
               mean == nullptr ? Vector<double>(s.curve.loss.col(k))
                               : Vector<double>::Constant(1, CurveRow{s}(k)));
   }
   const double all_seconds = seconds + s.clocks.solve.wall,
-               all_simulations = simulations + simulations_of(s);
+               all_simulations = simulations + simulations_of(s.counts);
   if (mean == nullptr) {
     // The estimate may be better than the end of the curve.
     if (s.loss.size() > 0)
@@ -79,7 +91,7 @@ void add_spent(ConvergenceHistory& history, const StageRecord& s) {
       *sum += spent;
   };
   add(history.all_seconds, knows_time(s), s.clocks.solve.wall);
-  add(history.all_simulations, knows_work(s), simulations_of(s));
+  add(history.all_simulations, knows_work(s), simulations_of(s.counts));
 }
 
 }  // namespace
@@ -94,6 +106,14 @@ std::optional<ConvergenceHistory> history_of(const CaseRecord& found) {
   if (!history.failed && found.stages.size() < found.info.stages.size())
     return {};
   return history;
+}
+
+double simulations_of(const Counts& counts) {
+  double sum = 0;
+  for (const Counter c :
+       {Counter::forward, Counter::vjp, Counter::jacobian, Counter::inverse})
+    sum += static_cast<double>(counts[c]);
+  return sum;
 }
 
 bool is_diagnostic(const Options& options) {

@@ -8,6 +8,9 @@
 
 namespace physinv {
 
+/// Calls of the simulator: a gradient, a Jacobian and an inverse count as one.
+double simulations_of(const Counts& counts);
+
 struct ConvergenceHistory {
   std::vector<double> seconds, simulations;
   std::vector<Vector<double>> loss;  ///< one entry per problem
@@ -15,6 +18,9 @@ struct ConvergenceHistory {
   /// where that is not known because its process was lost.
   std::optional<double> all_seconds = {}, all_simulations = {};
   bool failed = false;  ///< one of the stages, so that the chain has no end
+  /// `simulations` of a stage that counts them only at its end are spread
+  /// evenly over its iterations.
+  bool spread = false;
 };
 
 /// Empty unless every stage is finished, or one of them failed: of that one

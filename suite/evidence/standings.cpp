@@ -77,6 +77,15 @@ std::string listed(std::vector<std::string> parts) {
   return text;
 }
 
+/// The first method and those that end equal with it on every problem.
+std::vector<std::size_t> ties_of_first(const Standings& s) {
+  std::vector<std::size_t> equal{s.order.front()};
+  for (const MethodPair& pair : s.pairs)
+    if (pair.first == equal.front() && pair.test.ties == s.problems)
+      equal.push_back(pair.second);
+  return equal;
+}
+
 }  // namespace
 
 Standings standings(const CommonRuns& common) {
@@ -125,6 +134,17 @@ std::string standing_text(const CommonRuns& common,
                                      s.problems,
                                      common.runs ? "run" : "problem",
                                      s.problems == 1 ? "" : "s");
+  if (pair.test.ties == s.problems) {
+    std::vector<std::string> equal;
+    for (const std::size_t m : ties_of_first(s)) equal.push_back(title(m));
+    return fmt::format(
+        "{} of {} methods rank best and end with equal losses "
+        "on {}: {}",
+        equal.size(),
+        s.order.size(),
+        on,
+        listed(equal));
+  }
   if (pair.p >= kSignificant)
     return fmt::format(
         "No method is clearly ahead of the other{}: {} and {} rank best, and "

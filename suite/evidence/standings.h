@@ -36,7 +36,8 @@ Standings standings(const CommonRuns& common);
 
 /// The first against the next: "JPO ranks best of 5 methods: on 336 problems
 /// its final loss compared with BFGS, the next, is lower on 32 % ...", or that
-/// no method is clearly ahead. Empty if no two methods can be compared.
+/// no method is clearly ahead, or the names of those that end equal on every
+/// problem. Empty if no two methods can be compared.
 std::string standing_text(const CommonRuns& common,
                           const Standings& standings,
                           const std::map<std::string, std::string>& titles);

@@ -59,6 +59,9 @@ bool is_explained(Verdict verdict) {
 
 std::string cause_text(Verdict verdict, std::string_view cause) {
   if (cause.empty()) return "";
+  if (verdict == Verdict::not_judged &&
+      cause.find(kNumberNotRun) != std::string_view::npos)
+    return "";
   const bool stale = verdict == Verdict::reproduced;
   return fmt::format(
       "{}: {}", stale ? "Reproduced; its cause is stale" : "Cause", cause);

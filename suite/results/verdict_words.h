@@ -47,8 +47,11 @@ std::optional<Verdict> verdict_of(std::string_view words);
 /// A condition fails, and the cause tells what that is.
 bool is_explained(Verdict verdict);
 
+/// In a cause, instead of a number that was not measured.
+inline constexpr std::string_view kNumberNotRun = "(not run)";
 /// "Cause: the waveform is not printed"; of a claim that holds, that its cause
-/// is stale. Empty without one.
+/// is stale. Empty without one, and if a claim that is not judged lacks numbers
+/// of its cause.
 std::string cause_text(Verdict verdict, std::string_view cause);
 
 }  // namespace physinv
