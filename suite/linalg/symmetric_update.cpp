@@ -4,15 +4,16 @@
 #include <cmath>
 
 #include "suite/core/threads.h"
+#include "suite/linalg/panel_parts.h"
 #include "suite/linalg/tile_product.h"
 
 namespace physinv::linalg {
 namespace {
 
 constexpr Index kMaxParts = 8;
-constexpr Index kPartRows = 192;     ///< of a part, at least
-constexpr Index kThreadRows = 1024;  ///< below, a product is over too soon
+constexpr Index kPartRows = 192;  ///< of a part, at least
 constexpr Index kColumnBlock = 128;
+constexpr Index kPacked = 128;     ///< rows and columns that a thread packs
 constexpr Index kPackedRows = 16;  ///< at once: they stay in the L1
 
 /// kCount registers from column c on of kRows rows: y += A x for the stored
@@ -155,46 +156,51 @@ void RankUpdate::operator()(Symmetric a,
       std::max(columns_.size(),
                static_cast<std::size_t>(groups * depth * kTileColumns)));
   // Row r reads [-W V](r, :), column group q reads [V W](q, :), both packed.
-  for (Index begin = 0; begin < n; begin += kPackedRows) {
-    const Index end = std::min(begin + kPackedRows, n);
-    for (Index k = 0; k < count; ++k)
-      for (Index r = begin; r < end; ++r) {
-        double* const to = rows_.data() + r * depth + k;
-        to[0] = -w[k * stride + first + r];
-        to[count] = -v[k * stride + first + r];
-      }
-  }
-  for (Index q = 0; q < groups; ++q)
-    for (Index k = 0; k < depth; ++k) {
-      const double* from =
-          (k < count ? v + k * stride : w + (k - count) * stride) + first +
-          q * kTileColumns;
-      double* to = columns_.data() + (q * depth + k) * kTileColumns;
-      store(to, load(from));
-      store(to + kWidth, load(from + kWidth));
+  for_blocks(threads, (n + kPacked - 1) / kPacked, [&](Index pack, int) {
+    const Index begin = pack * kPacked, end = std::min(begin + kPacked, n);
+    for (Index from = begin; from < end; from += kPackedRows) {
+      const Index to = std::min(from + kPackedRows, end);
+      for (Index k = 0; k < count; ++k)
+        for (Index r = from; r < to; ++r) {
+          double* const row = rows_.data() + r * depth + k;
+          row[0] = -w[k * stride + first + r];
+          row[count] = -v[k * stride + first + r];
+        }
     }
-  const Index blocks = (n + kColumnBlock - 1) / kColumnBlock;
-  // Where one core makes the products with vectors, the matrix stays with it.
-  if (n < kThreadRows) threads = nullptr;
-  for_blocks(threads, blocks, [&](Index reversed, int) {
-    const Index block = blocks - 1 - reversed;  // the largest first
-    const Index begin = block * kColumnBlock;
-    const Index end = std::min(begin + kColumnBlock, n);
-    for (Index r0 = 0; r0 < end; r0 += kTileRows) {
-      const Index some = std::min<Index>(kTileRows, n - r0);
-      Index q = std::max(begin, r0) / kTileColumns;
-      for (; q * kTileColumns < end; ++q)
-        tile_rows(some,
-                  depth,
-                  {rows_.data() + r0 * depth, depth, 1},
-                  columns_.data() + q * depth * kTileColumns,
-                  kTileColumns,
-                  [&](Index r, Pack8 x, Pack8 y) {
-                    double* to =
-                        a.row(first + r0 + r) + first + q * kTileColumns;
-                    store(to, load(to) + x);
-                    store(to + kWidth, load(to + kWidth) + y);
-                  });
+    for (Index q = begin / kTileColumns; q * kTileColumns < end; ++q)
+      for (Index k = 0; k < depth; ++k) {
+        const double* from =
+            (k < count ? v + k * stride : w + (k - count) * stride) + first +
+            q * kTileColumns;
+        double* to = columns_.data() + (q * depth + k) * kTileColumns;
+        store(to, load(from));
+        store(to + kWidth, load(from + kWidth));
+      }
+  });
+  const PanelParts parts(n);
+  const Index pieces = threads != nullptr && parts.count() > 1 ? 2 : 1;
+  for_blocks(threads, parts.count() * pieces, [&](Index part, int) {
+    const Index from = parts.begin(part, pieces);
+    const Index to = parts.begin(part + 1, pieces);
+    for (Index begin = from / kColumnBlock * kColumnBlock; begin < n;
+         begin += kColumnBlock) {
+      const Index end = std::min(begin + kColumnBlock, n);
+      for (Index r0 = from; r0 < std::min(to, end); r0 += kTileRows) {
+        const Index some = std::min<Index>(kTileRows, to - r0);
+        Index q = std::max(begin, r0) / kTileColumns;
+        for (; q * kTileColumns < end; ++q)
+          tile_rows(some,
+                    depth,
+                    {rows_.data() + r0 * depth, depth, 1},
+                    columns_.data() + q * depth * kTileColumns,
+                    kTileColumns,
+                    [&](Index r, Pack8 x, Pack8 y) {
+                      double* to_row =
+                          a.row(first + r0 + r) + first + q * kTileColumns;
+                      store(to_row, load(to_row) + x);
+                      store(to_row + kWidth, load(to_row + kWidth) + y);
+                    });
+      }
     }
   });
 }

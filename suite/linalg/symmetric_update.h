@@ -24,6 +24,9 @@ struct Symmetric {
 /// number of double cache lines, so that columns do not share few cache sets.
 Index padded_stride(Index n);
 
+/// Below this many rows a product with a vector is over too soon for threads.
+inline constexpr Index kThreadRows = 1024;
+
 /// y = A x on rows and columns >= first, for x that is padded like a row and
 /// zero before `first`; y is written from `first` on (and up to its padding).
 /// `parts` is scratch. The order of the sums depends on n and first only.

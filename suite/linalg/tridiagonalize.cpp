@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "suite/core/threads.h"
+#include "suite/core/blocks.h"
 #include "suite/linalg/householder.h"
+#include "suite/linalg/panel_parts.h"
 
 namespace physinv::linalg {
 namespace {
 
 constexpr Index kPanel = 12;  ///< columns of a panel of the one-stage form
 constexpr Index kTwoStagesFrom = 1024;
-constexpr Index kSquare = 64;  ///< blocks of A for A V: two uses from the L1
-constexpr Index kMaxParts = 8;
+constexpr Index kRows = 64;  ///< of a panel, for a thread at once
 
 // Products with a thin panel: the `count` memory rows X_k, `stride` numbers
 // apart, several of them in one pass over the other vector. Lengths are
@@ -121,7 +121,10 @@ void Tridiagonalize::one_stage() {
   for (Index first = 0; first < n; first += kPanel) {
     const Index count = std::min(kPanel, n - first);
     panel(first, count);
-    update_(a_, first + count, data(v_), data(w_), stride, count, threads_);
+    // Where one core makes the products with vectors, the matrix stays with it.
+    const Index behind = first + count;
+    Threads* const threads = n - behind < kThreadRows ? nullptr : threads_;
+    update_(a_, behind, data(v_), data(w_), stride, count, threads);
   }
 }
 
@@ -218,49 +221,47 @@ void Tridiagonalize::triangular_factor(Index start,
 }
 
 /// A V from one triangle: every square block is used as itself and mirrored.
-/// Parts of equal area sum in their own copies, added up in order.
+/// Parts of equal area sum in their own copies, added up in order. If they do
+/// not divide among the threads, a thread takes half of the columns of V.
 void Tridiagonalize::multiply_panel(Index start, const double* v, double* av) {
-  constexpr Index b = kBand;
-  const Index n = a_.n, stride = a_.stride;
-  const Index squares = (n - start + kSquare - 1) / kSquare;
-  const Index parts = std::clamp<Index>(squares / 4, 1, kMaxParts);
-  const auto begin = [&](Index p) {
-    if (p == parts) return squares;
-    const double left =
-        std::sqrt(1 - static_cast<double>(p) / static_cast<double>(parts));
-    return static_cast<Index>(static_cast<double>(squares) * (1 - left));
-  };
-  const Index size = n * b;
-  if (static_cast<Index>(parts_.size()) < (parts - 1) * size)
-    parts_.resize(static_cast<std::size_t>((parts - 1) * size));
-  for_blocks(threads_, parts, [&](Index p, int) {
-    double* const to = p == 0 ? av : parts_.data() + (p - 1) * size;
-    std::fill(to + (start + begin(p) * kSquare) * b, to + n * b, 0.0);
-    alignas(64) double block[kSquare * kSquare];
-    for (Index i = begin(p); i < begin(p + 1); ++i) {
-      const Index r = start + i * kSquare, rows = std::min(kSquare, n - r);
-      for (Index c = r; c < n; c += kSquare) {
-        const Index columns = std::min(kSquare, n - c);
-        if (c == r) {
-          for (Index k = 0; k < rows; ++k)
-            for (Index l = k; l < rows; ++l)
-              block[k * kSquare + l] = block[l * kSquare + k] =
-                  a_.row(r + k)[r + l];
+  constexpr Index b = kBand, square = PanelParts::kSquare;
+  const Index n = a_.n, stride = a_.stride, size = n * b;
+  const PanelParts parts(n - start);
+  const Index count = parts.count();
+  const bool even = count == 1 || count % count_of(threads_) == 0;
+  const Index cuts = even ? 1 : 2, width = b / cuts;
+  if (static_cast<Index>(parts_.size()) < (count - 1) * size)
+    parts_.resize(static_cast<std::size_t>((count - 1) * size));
+  for_blocks(threads_, count * cuts, [&](Index task, int) {
+    const Index p = task / cuts, column = task % cuts * width;
+    const Index begin = start + parts.begin(p),
+                end = start + parts.begin(p + 1);
+    const double* const x = v + column;
+    double* const to = (p == 0 ? av : parts_.data() + (p - 1) * size) + column;
+    for (Index r = begin; r < n; ++r) std::fill_n(to + r * b, width, 0.0);
+    alignas(64) double block[square * square];
+    const auto add =
+        [&](Index rows, Index depth, Scalars a, Index from, Index into) {
           multiply<Into::add>(
-              rows, b, rows, {block, kSquare, 1}, v + r * b, b, to + r * b, b);
-          continue;
-        }
+              rows, width, depth, a, x + from * b, b, to + into * b, b);
+        };
+    for (Index r = begin; r < end; r += square) {
+      const Index rows = std::min(square, n - r);
+      for (Index k = 0; k < rows; ++k)
+        for (Index l = k; l < rows; ++l)
+          block[k * square + l] = block[l * square + k] = a_.row(r + k)[r + l];
+      add(rows, rows, {block, square, 1}, r, r);
+      for (Index c = r + square; c < n; c += square) {
+        const Index columns = std::min(square, n - c);
         const double* from = a_.row(r) + c;
-        multiply<Into::add>(
-            rows, b, columns, {from, stride, 1}, v + c * b, b, to + r * b, b);
-        multiply<Into::add>(
-            columns, b, rows, {from, 1, stride}, v + r * b, b, to + c * b, b);
+        add(rows, columns, {from, stride, 1}, c, r);
+        add(columns, rows, {from, 1, stride}, r, c);
       }
     }
   });
-  for (Index p = 1; p < parts; ++p) {
+  for (Index p = 1; p < count; ++p) {
     const double* part = parts_.data() + (p - 1) * size;
-    for (Index i = (start + begin(p) * kSquare) * b; i < n * b; ++i)
+    for (Index i = (start + parts.begin(p)) * b; i < size; ++i)
       av[i] += part[i];
   }
 }
@@ -276,23 +277,35 @@ void Tridiagonalize::update_behind(Index start) {
   double* const v = reserve(x_, 4 * n * b);
   double* const av = v + n * b;
   double* const y = av + n * b;
-  for (Index c = start; c < n; ++c)
-    for (Index i = 0; i < b; ++i) v[c * b + i] = vt[i * stride + c];
-
+  // f(begin, end) on the rows behind `start`.
+  const auto rows = [&](auto&& f) {
+    for_blocks(threads_, (rest + kRows - 1) / kRows, [&](Index block, int) {
+      const Index begin = start + block * kRows;
+      f(begin, std::min(begin + kRows, n));
+    });
+  };
+  rows([&](Index begin, Index end) {
+    for (Index c = begin; c < end; ++c)
+      for (Index i = 0; i < b; ++i) v[c * b + i] = vt[i * stride + c];
+  });
   alignas(64) double s[b * b] = {}, inner[b * b] = {}, half[b * b] = {};
   triangular_factor(start, v, s);
   multiply_panel(start, v, av);
-  multiply<Into::set>(
-      rest, b, b, {av + start * b, b, 1}, s, b, y + start * b, b);
+  rows([&](Index begin, Index end) {
+    multiply<Into::set>(
+        end - begin, b, b, {av + begin * b, b, 1}, s, b, y + begin * b, b);
+  });
   multiply<Into::set>(
       b, b, rest, {v + start * b, 1, b}, y + start * b, b, inner, b);
   multiply<Into::set>(b, b, b, {s, 1, b}, inner, b, half, b);
   for (double& h : half) h *= -0.5;
-  multiply<Into::add>(
-      rest, b, b, {v + start * b, b, 1}, half, b, y + start * b, b);
   double* const wt = data(w_);
-  for (Index c = start; c < n; ++c)
-    for (Index i = 0; i < b; ++i) wt[i * stride + c] = y[c * b + i];
+  rows([&](Index begin, Index end) {
+    multiply<Into::add>(
+        end - begin, b, b, {v + begin * b, b, 1}, half, b, y + begin * b, b);
+    for (Index c = begin; c < end; ++c)
+      for (Index i = 0; i < b; ++i) wt[i * stride + c] = y[c * b + i];
+  });
   update_(a_, start, vt, wt, stride, b, threads_);
 }
 
