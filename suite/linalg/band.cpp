@@ -1,9 +1,12 @@
 #include "suite/linalg/band.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 
+#include "suite/core/blocks.h"
+#include "suite/core/progress.h"
 #include "suite/linalg/householder.h"
 
 namespace physinv::linalg {
@@ -121,6 +124,8 @@ double turn_below(
   return next_tau;
 }
 
+constexpr Index kGroup = 8;  ///< sweeps that a thread runs together
+
 /// Reflectors of sweep j: rows j + 1, j + 1 + kBand, ...
 Index chain(Index n, Index j) { return (n - 1 - j + kBand - 1) / kBand; }
 
@@ -135,28 +140,73 @@ void BandReduction::reset(Index n) {
   std::fill_n(band_, count, 0.0);
 }
 
-void BandReduction::reduce(VectorOut<double> d, VectorOut<double> e) {
-  Index total = 0;
-  for (Index j = 0; j + 2 < n_; ++j) total += chain(n_, j);
-  tau_.resize(static_cast<std::size_t>(total));
-  auto* v = static_cast<double*>(reflectors_.reserve(
-      static_cast<std::size_t>(total * kBand) * sizeof(double)));
-  double* tau = tau_.data();
-  for (Index j = 0; j + 2 < n_; ++j) {
-    double* column = &entry(j + 1, j);
-    std::copy(column, column + kBand, v);
-    double beta;
-    *tau = reflect(kBand, v, beta);
-    std::fill(column, column + kBand, 0.0);
-    *column = beta;
-    for (Index r = j + 1;; r += kBand) {
-      if (*tau != 0) turn_diagonal(&entry(r, r), kStep, *tau, v);
-      if (r + kBand >= n_) break;
-      tau[1] = turn_below(&entry(r + kBand, r), kStep, *tau, v, v + kBand);
-      ++tau, v += kBand;
+void BandReduction::open_sweeps() {
+  first_.assign(1, 0);
+  for (Index j = 0; j + 2 < n_; ++j)
+    first_.push_back(first_.back() + chain(n_, j));
+  tau_.resize(static_cast<std::size_t>(first_.back()));
+  reflectors_.reserve(static_cast<std::size_t>(first_.back() * kBand) *
+                      sizeof(double));
+}
+
+/// Clears column `sweep` behind the entry below the diagonal.
+void BandReduction::start(Index sweep) {
+  double* const v = reflector(first(sweep));
+  double* const column = &entry(sweep + 1, sweep);
+  std::copy(column, column + kBand, v);
+  double beta;
+  tau_[static_cast<std::size_t>(first(sweep))] = reflect(kBand, v, beta);
+  std::fill(column, column + kBand, 0.0);
+  *column = beta;
+}
+
+/// A block further: the reflector on both sides, and the next one, for the
+/// first column of what it has put below the band.
+void BandReduction::step(Index sweep, Index number) {
+  const Index at = first(sweep) + number, r = sweep + 1 + number * kBand;
+  double* const tau = tau_.data() + at;
+  double* const v = reflector(at);
+  if (*tau != 0) turn_diagonal(&entry(r, r), kStep, *tau, v);
+  if (r + kBand < n_)
+    tau[1] = turn_below(&entry(r + kBand, r), kStep, *tau, v, v + kBand);
+}
+
+/// Sweeps [begin, end) together. Step s of a sweep needs what step s + 1 of
+/// the one before has left, so each follows two steps behind, the first one
+/// behind the last of the group before. `own` is how far the last one is.
+void BandReduction::run(Index begin,
+                        Index end,
+                        const Progress* before,
+                        Progress& own) {
+  const Index lag = 2 * (end - 1 - begin);
+  for (Index t = 0; t < chain(n_, begin) + lag; ++t) {
+    if (before != nullptr)
+      before->wait_for(std::min(t + 2, chain(n_, begin - 1)));
+    for (Index j = begin, s = t; j < end && s >= 0; ++j, s -= 2) {
+      if (s == 0) start(j);
+      if (s < chain(n_, j)) step(j, s);
     }
-    ++tau, v += kBand;
+    if (t >= lag) own.reach(t - lag + 1);
   }
+}
+
+void BandReduction::reduce(VectorOut<double> d,
+                           VectorOut<double> e,
+                           Threads* threads) {
+  open_sweeps();
+  const Index sweeps = std::max<Index>(n_ - 2, 0);
+  const Index groups = (sweeps + kGroup - 1) / kGroup;
+  std::vector<Progress> progress(static_cast<std::size_t>(groups));
+  std::atomic<Index> next{0};  // groups start in order
+  for_blocks(threads, count_of(threads), [&](Index, int) {
+    for (Index g; (g = next.fetch_add(1)) < groups;) {
+      Progress* const own = progress.data() + g;
+      run(g * kGroup,
+          std::min((g + 1) * kGroup, sweeps),
+          g > 0 ? own - 1 : nullptr,
+          *own);
+    }
+  });
   for (Index j = 0; j < n_; ++j) d(j) = entry(j, j);
   for (Index j = 0; j + 1 < n_; ++j) e(j) = entry(j + 1, j);
 }

@@ -8,6 +8,11 @@
 #include "suite/core/batch.h"
 #include "suite/core/buffer.h"
 
+namespace physinv {
+class Progress;
+class Threads;
+}  // namespace physinv
+
 namespace physinv::linalg {
 
 inline constexpr Index kBand = 32;
@@ -20,7 +25,8 @@ class BandReduction {
   /// Entry (i, j), 0 <= i - j <= kBand.
   double& entry(Index i, Index j) { return band_[j * (kStep + 1) + i - j]; }
 
-  void reduce(VectorOut<double> d, VectorOut<double> e);
+  /// Sweeps follow each other over the threads; no bit depends on them.
+  void reduce(VectorOut<double> d, VectorOut<double> e, Threads* threads);
 
   /// x <- Q x for T = Q^T A Q. X is double, or Pack8 for
   /// eight vectors side by side.
@@ -34,10 +40,23 @@ class BandReduction {
   /// bulge; columns of a block then lie in different cache sets.
   static constexpr Index kStep = 72;
 
+  void open_sweeps();
+  void start(Index sweep);
+  void step(Index sweep, Index number);
+  void run(Index begin, Index end, const Progress* before, Progress& own);
+  /// Place of a sweep's first reflector.
+  Index first(Index sweep) const {
+    return first_[static_cast<std::size_t>(sweep)];
+  }
+  double* reflector(Index i) {
+    return static_cast<double*>(reflectors_.data()) + i * kBand;
+  }
+
   Index n_ = 0;
   double* band_ = nullptr;
   Buffer memory_, reflectors_;
   std::vector<double> tau_;
+  std::vector<Index> first_;
 };
 
 }  // namespace physinv::linalg

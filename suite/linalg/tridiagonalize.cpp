@@ -324,7 +324,7 @@ void Tridiagonalize::two_stage() {
     }
     update_behind(start);
   }
-  band_.reduce(d_, e_);
+  band_.reduce(d_, e_, threads_);
 }
 
 template <class X>
