@@ -11,6 +11,7 @@
 
 #include "optimizers/half_inverse/half_inverse.h"
 #include "suite/core/math.h"
+#include "suite/core/threads.h"
 
 #ifdef PHYSINV_BENCH_LAPACK
 extern "C" {
@@ -110,6 +111,18 @@ void reduction(State& state) {
   for (auto _ : state) {
     fill(reduction, s.gram);
     reduction.reduce(kStages);
+  }
+  count_flops(state, reduction_flops(s.g.size()));
+}
+
+/// As an update reduces its matrix, in wall time.
+void reduction_in_threads(State& state) {
+  const Sample& s = sample(state.range(0));
+  Threads threads(static_cast<int>(state.range(1)));
+  Tridiagonalize reduction(&threads);
+  for (auto _ : state) {
+    fill(reduction, s.gram);
+    reduction.reduce();
   }
   count_flops(state, reduction_flops(s.g.size()));
 }
@@ -225,7 +238,17 @@ std::vector<Kernel> all() {
   };
 }
 
-const bool kAdded = add_kernels(all(), in_milliseconds("m"));
+const bool kAdded =
+    add_kernels(all(), in_milliseconds("m")) &&
+    add_kernels(
+        {{"hig/reduction",
+          {{512, 1}, {512, 2}, {1024, 1}, {1024, 2}, {4096, 1}, {4096, 2}},
+          reduction_in_threads}},
+        [](benchmark::internal::Benchmark& kernel) {
+          kernel.ArgNames({"m", "threads"})
+              ->Unit(benchmark::kMillisecond)
+              ->UseRealTime();
+        });
 
 }  // namespace
 }  // namespace physinv::hig
