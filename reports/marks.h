@@ -18,10 +18,10 @@ inline bool has_spread(const Series& s) {
   return !s.y.empty() && s.lo.size() == s.y.size() && s.hi.size() == s.y.size();
 }
 
-/// Few marks have bars instead of a band.
+/// Points that are not joined, and few marks, have bars instead of a band.
 inline bool has_error_bars(const Series& s) {
   constexpr std::size_t kFewPoints = 12;
-  return has_spread(s) && s.y.size() <= kFewPoints && (s.markers || !s.line);
+  return has_spread(s) && (!s.line || (s.markers && s.y.size() <= kFewPoints));
 }
 
 /// A step of a path: M moves there, L draws a line.

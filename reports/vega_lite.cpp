@@ -117,8 +117,19 @@ Json roomy(Json axis, bool field) {
   return axis;
 }
 
+/// Names at 0, 1, ...: those of a field without values.
+Json names_axis(const std::vector<std::string>& names) {
+  Json places = Json::array();
+  for (std::size_t k = 0; k < names.size(); ++k) places.push_back(k);
+  return {{"values", std::move(places)},
+          {"labelExpr", Json(names).dump() + "[datum.value]"}};
+}
+
 Json x_axis(const Panel& panel) {
   Json out = vega_axis("x", panel.x_label, panel.x_log);
+  if (panel.field && panel.field->values.empty() &&
+      !panel.field->x_names.empty())
+    out["axis"] = names_axis(panel.field->x_names);
   const Axis x(panel.x_log);
   if (!panel.x_min || !panel.x_max || !x.shows(*panel.x_min) ||
       !x.shows(*panel.x_max))

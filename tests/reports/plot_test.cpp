@@ -233,6 +233,15 @@ TEST(RenderSvg, WideNamesOfColumnsStandUpright) {
   EXPECT_EQ(count(render_svg(one_panel(panel)), "rotate(-90"), 2U);
 }
 
+TEST(RenderSvg, AFieldWithoutValuesNamesThePlaces) {
+  Panel panel;
+  panel.series = {{.label = "f", .method = "f", .x = {0, 1}, .y = {3, 4}}};
+  panel.field = Field2D{.x_names = {"first", "second"}};
+  const std::string svg = render_svg(one_panel(panel));
+  EXPECT_EQ(count(svg, ">first</text>") + count(svg, ">second</text>"), 2U);
+  EXPECT_EQ(count(svg, "<image"), 0U);
+}
+
 TEST(RenderSvg, RowsWithNamesHaveTheirHeight) {
   Panel panel;
   panel.field = Field2D{.x = {0}, .y = {0, 1}, .values = {0, 1}};

@@ -107,6 +107,21 @@ TEST(VegaLite, FieldsAreRectanglesAndArrowsRules) {
   EXPECT_DOUBLE_EQ(arrow.at("y2"), 0.8);
 }
 
+TEST(VegaLite, AFieldWithoutValuesNamesThePlaces) {
+  Panel panel{.x_label = "solver", .y_label = "f"};
+  panel.series = {{.label = "f", .method = "f", .x = {0, 1}, .y = {3, 4}}};
+  panel.field = Field2D{.x_names = {"a's", "b"}};
+  const Json layers = vega_lite({.id = "f", .title = "F", .panels = {panel}})
+                          .at("concat")
+                          .at(0)
+                          .at("layer");
+  for (const Json& layer : layers)
+    EXPECT_NE(layer.at("mark").at("type"), "rect");
+  const Json& axis = layers.at(0).at("encoding").at("x").at("axis");
+  EXPECT_EQ(axis.at("values"), (Json{0, 1}));
+  EXPECT_EQ(axis.at("labelExpr"), "[\"a's\",\"b\"][datum.value]");
+}
+
 TEST(VegaLite, EveryHueHasAShape) {
   Figure f = figure();
   f.panels[0].series[1].style =
