@@ -5,11 +5,12 @@
 #include <utility>
 #include <vector>
 
+#include "against.h"
 #include "suite/evidence/cell.h"
-#include "suite/evidence/shares.h"
 #include "suite/evidence/statistics.h"
 #include "suite/harness/registry.h"
-#include "suite/results/results.h"
+#include "suite/results/published.h"
+#include "whose_bfgs_claims.h"
 
 namespace libraries {
 namespace {
@@ -18,64 +19,35 @@ using physinv::Cell;
 using physinv::Equality;
 using physinv::Evidence;
 using physinv::Index;
+using physinv::Measured;
 using physinv::Quantity;
-using physinv::Run;
-using physinv::Select;
-using physinv::Shares;
+using physinv::Series;
 
 /// By where solvers end, not by when they stop.
 constexpr Equality kSameEnd{.relative = 1e-3, .both_below = 1e-6};
 
-const Select kFit{"jpo", "fit"}, kRefined{"jpo", "refine"};
-
-physinv::RunValue against(const std::string& solver,
-                          double (*share)(const Shares&),
-                          Equality equality) {
-  return [=](const Run& run) -> std::optional<double> {
-    const auto other = run.beside({solver});
-    if (!other) return {};
-    return share(
-        physinv::compare_losses(run.stage->loss, other->stage->loss, equality));
-  };
-}
-
-double better(const Shares& s) { return s.better; }
-double equal(const Shares& s) { return s.equal; }
-double f(const Shares& s) { return s.f(); }
-
 struct Column {
   const char* head;
-  const Select& of;
-  double (*share)(const Shares&);
+  physinv::Select (*of)();
+  Share share;
   Equality equality = Equality::strict;
   const char* printed = "";
 };
 
 const std::vector<Column>& columns() {
   static const std::vector<Column> kColumns = {
-      {"better", kFit, better, Equality::strict, "table4/jpo/better"},
-      {"equal", kFit, equal, Equality::strict, "table4/jpo/equal"},
-      {"f", kFit, f},
+      {"better", fit, better, Equality::strict, "table4/jpo/better"},
+      {"equal", fit, equal, Equality::strict, "table4/jpo/equal"},
+      {"f", fit, f},
       {"refined better",
-       kRefined,
+       refined,
        better,
        Equality::strict,
        "table5/jpo/better"},
-      {"refined equal", kRefined, equal, Equality::strict, "table5/jpo/equal"},
-      {"refined f", kRefined, f},
-      {"refined f, same end", kRefined, f, kSameEnd}};
+      {"refined equal", refined, equal, Equality::strict, "table5/jpo/equal"},
+      {"refined f", refined, f},
+      {"refined f, same end", refined, f, kSameEnd}};
   return kColumns;
-}
-
-/// Solvers by themselves, in the order of the experiment.
-std::vector<std::string> solvers(const Evidence& e) {
-  const auto experiment = physinv::registry().find(e.experiment);
-  std::vector<std::string> all;
-  for (const auto& method : experiment->methods)
-    if (method.chain.front()->name() == "solve") all.push_back(method.id);
-  for (const auto& id : e.results.methods(e.experiment))
-    if (physinv::find_method(*experiment, id) == nullptr) all.push_back(id);
-  return all;
 }
 
 physinv::Table table(const std::string& varied, const Evidence& e) {
@@ -94,11 +66,11 @@ physinv::Table table(const std::string& varied, const Evidence& e) {
           "length of their first trial, those with back-off halve their step "
           "at NaN."};
   for (const Column& c : columns()) table.columns.push_back(c.head);
-  for (const std::string& solver : solvers(e)) {
+  for (const std::string& solver : solvers_of(e)) {
     physinv::TableRow row{.label = solver};
     for (const Column& c : columns()) {
       const Quantity q =
-          percent(mean(c.of, against(solver, c.share, c.equality)));
+          percent(mean(c.of(), against(solver, c.share, c.equality)));
       Cell cell = physinv::cell_of(q(e));
       if (solver == "bfgs" && *c.printed != '\0')
         cell = beside_printed(
@@ -110,12 +82,12 @@ physinv::Table table(const std::string& varied, const Evidence& e) {
   return table;
 }
 
-physinv::Series over_n(const std::string& solver, const Evidence& e) {
+Series over_n(const std::string& solver, const Evidence& e) {
   std::map<Index, std::vector<double>> values;
   for (const auto& s :
-       sample(e, kRefined, against(solver, f, Equality::strict)))
+       sample(e, refined(), against(solver, f, Equality::strict)))
     values[s.n].push_back(s.value);
-  physinv::Series series{.label = solver, .method = solver, .markers = true};
+  Series series{.label = solver, .method = solver, .markers = true};
   for (const auto& [n, of_seeds] : values) {
     series.x.push_back(static_cast<double>(n));
     series.y.push_back(physinv::mean_of(of_seeds));
@@ -126,7 +98,7 @@ physinv::Series over_n(const std::string& solver, const Evidence& e) {
 physinv::Figure figure(const Evidence& e) {
   physinv::Panel panel{
       .title = "", .x_label = "n", .y_label = "f_N", .x_log = true};
-  for (const std::string& solver : solvers(e)) {
+  for (const std::string& solver : solvers_of(e)) {
     auto series = over_n(solver, e);
     if (!series.x.empty()) panel.series.push_back(std::move(series));
   }
@@ -139,7 +111,84 @@ physinv::Figure figure(const Evidence& e) {
           .note = "Above 1/2 joint optimization is better on more problems."};
 }
 
+/// f of refined JPO in per cent, as the paper prints it; empty if it does not.
+std::optional<double> printed_f(const std::string& problem, const Evidence& e) {
+  const auto better = e.published.find("jpo/" + problem, "table5/jpo/better"),
+             equal = e.published.find("jpo/" + problem, "table5/jpo/equal");
+  if (!better || !equal) return {};
+  return better->value + equal->value / 2;
+}
+
+/// A point for each solver, at its place among them.
+Series by_solver(const char* label,
+                 const std::vector<std::string>& solvers,
+                 const Evidence& e,
+                 Equality equality) {
+  Series series{
+      .label = label, .method = label, .line = false, .markers = true};
+  for (std::size_t i = 0; i < solvers.size(); ++i) {
+    const Measured m =
+        percent(mean(refined(), against(solvers[i], f, equality)))(e);
+    const double spread = m.spread.value_or(0);
+    series.x.push_back(static_cast<double>(i));
+    series.y.push_back(*m.value);
+    series.lo.push_back(*m.value - spread);
+    series.hi.push_back(*m.value + spread);
+  }
+  return series;
+}
+
+/// Those that were run, without the settings of the suite's BFGS.
+std::vector<std::string> libraries_of(const Evidence& e) {
+  auto all = solvers_of(e);
+  std::erase_if(all, [&](const std::string& solver) {
+    return solver.starts_with("bfgs-") ||
+           !mean(refined(), against(solver, f))(e).value;
+  });
+  return all;
+}
+
+physinv::Panel glance_panel(const std::string& problem, const Evidence& all) {
+  const Evidence e = all.of(study_of(problem));
+  const auto solvers = libraries_of(e);
+  const double end = static_cast<double>(solvers.size()) - 0.5;
+  physinv::Panel panel{
+      .title = physinv::registry().find("jpo/" + problem)->title,
+      .x_label = "solver",
+      .y_label = "f, %"};
+  // Without values a field only names the places along x.
+  panel.field = physinv::Field2D{};
+  panel.field->x_names = solvers;
+  panel.x_min = -0.5, panel.x_max = end, panel.y_min = 0, panel.y_max = 100;
+  panel.series = {by_solver("equal bit by bit", solvers, e, Equality::strict),
+                  by_solver("equal ends count as equal", solvers, e, kSameEnd)};
+  panel.series.back().dashed = true;  // hollow
+  if (const auto paper = printed_f(problem, e))
+    panel.series.push_back({.label = "paper",
+                            .method = "paper",
+                            .x = {-0.5, end},
+                            .y = {*paper, *paper},
+                            .dashed = true});
+  return panel;
+}
+
 }  // namespace
+
+physinv::Figure at_a_glance(const Evidence& e) {
+  physinv::Figure figure{
+      .id = "solvers",
+      .title = "How often refined joint optimization ends below each solver",
+      .where = "Table 5",
+      .columns = 2,
+      .note =
+          "f = better + equal / 2: mean over n, then mean and sample "
+          "standard deviation over seeds. Hollow: losses within 0.1 % of "
+          "each other, or both below 1e-6, count as equal. Dashed: the "
+          "paper, against SciPy's BFGS, which bfgs follows."};
+  for (const std::string& problem : section4())
+    figure.panels.push_back(glance_panel(problem, e));
+  return figure;
+}
 
 physinv::Section whose_bfgs(const std::string& varied, const Evidence& e) {
   return {.tables = {table(varied, e)}, .figures = {figure(e)}};

@@ -17,4 +17,8 @@ namespace libraries {
 physinv::Section whose_bfgs(const std::string& varied,
                             const physinv::Evidence& evidence);
 
+/// f of the problems of Sec. 4, a panel each: a point for each solver, and the
+/// paper's as a line.
+physinv::Figure at_a_glance(const physinv::Evidence& evidence);
+
 }  // namespace libraries

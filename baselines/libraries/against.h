@@ -1,0 +1,30 @@
+/// How often joint optimization ends below a solver, on the same problems.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "suite/evidence/quantity.h"
+#include "suite/evidence/shares.h"
+
+namespace libraries {
+
+/// The network alone, and refined.
+inline physinv::Select fit() { return {"jpo", "fit"}; }
+inline physinv::Select refined() { return {"jpo", "refine"}; }
+
+/// A share of a run's problems, of its losses beside those of `solver`.
+using Share = double (*)(const physinv::Shares&);
+double better(const physinv::Shares& s);
+double equal(const physinv::Shares& s);
+double f(const physinv::Shares& s);
+physinv::RunValue against(
+    const std::string& solver,
+    Share share,
+    physinv::Equality equality = physinv::Equality::strict);
+
+/// Solvers by themselves, in the order of the experiment: those of the plug-in
+/// with the settings of the suite's BFGS, then those that were run from Python.
+std::vector<std::string> solvers_of(const physinv::Evidence& evidence);
+
+}  // namespace libraries
