@@ -142,8 +142,7 @@ std::string every_measured(const ClaimResult& claim) {
   return markdown(out.empty() ? "not run" : out);
 }
 
-/// The paper's question, and its main statements with what was measured; each
-/// study of one is a line of a list.
+/// The paper's question, and its main statements with what was measured.
 std::string answer(const Publication& paper,
                    const LatestClaims& claims,
                    const ResultsLinks& links) {
@@ -151,22 +150,19 @@ std::string answer(const Publication& paper,
                                 markdown(paper.title),
                                 markdown(paper.key),
                                 markdown(paper.question));
-  std::string studies;
   for (const ClaimKey key : paper.main_claims) {
     const auto found = claims.find(key);
     if (found == claims.end()) continue;
     const ClaimResult& claim = found->second.claim;
-    const bool of_study = is_study(key);
-    (of_study ? studies : out) += fmt::format(
-        "{}{}: **{} {}**, {}, {}.",
-        of_study ? "\n- " : " ",
+    out += fmt::format(
+        " {}: **{} {}**, {}, {}.",
         markdown(claim.says),
         mark_of(claim.verdict),
         words_of(claim.verdict),
-        of_study ? every_measured(claim) : measured(claim),
+        is_study(key) ? every_measured(claim) : measured(claim),
         page_link(key.first, key.first + ' ' + key.second, links.pages));
   }
-  return out + '\n' + (studies.empty() ? "" : studies + '\n');
+  return out + '\n';
 }
 
 std::string answers(const Papers& papers,
@@ -250,16 +246,18 @@ std::string experiments(const std::vector<NamedDigest>& campaigns,
 
 /// The results of studies, in a paragraph.
 std::string studies_line(const Papers& papers, const ResultsLinks& links) {
-  std::string out;
+  std::string out, last;
   for (const auto& [paper, all] : papers)
     for (const auto& [key, s] : all)
-      if (is_study(key))
-        out += fmt::format("{}{} {}",
-                           out.empty() ? "" : "; ",
-                           page_link(key.first,
-                                     key.first.substr(key.first.find('/') + 1),
-                                     links.pages),
-                           words_of(s.claim.verdict));
+      if (is_study(key)) {
+        const std::string name = key.first.substr(key.first.find('/') + 1);
+        out += key.first == last
+                   ? ", "
+                   : (out.empty() ? "" : "; ") +
+                         page_link(key.first, name, links.pages) + ' ';
+        out += words_of(s.claim.verdict);
+        last = key.first;
+      }
   if (out.empty()) return "";
   return "- Studies vary settings that the papers do not print: " + out + "\n";
 }

@@ -30,10 +30,15 @@ bool has(const std::string& problem) {
   return physinv::registry().find("jpo/" + problem) != nullptr;
 }
 
-/// On Navier-Stokes BFGS has a setting of its own, which others do not vary.
+/// There BFGS has a setting of its own, which others do not vary, and a network
+/// takes minutes: only the paper's sizes are run.
+bool is_flow(const physinv::Experiment& base) {
+  return base.name == "jpo/navier-stokes";
+}
+
 std::vector<physinv::Method> methods_of(const physinv::Experiment& base) {
   auto methods = solvers(base);
-  if (base.name != "jpo/navier-stokes")
+  if (!is_flow(base))
     for (auto& setting : bfgs_settings(base))
       methods.push_back(std::move(setting));
   return methods;
@@ -50,6 +55,10 @@ void add(const std::string& problem) {
       *base, "jpo", [&](const physinv::Profile&, physinv::Row row) {
         return rows(std::move(row), methods);
       });
+  if (is_flow(*base))
+    std::erase_if(profiles, [](const physinv::Profile& profile) {
+      return profile.name != "paper";
+    });
   methods.push_back(*physinv::find_method(*base, "jpo"));
   physinv::register_study(name, of);
   physinv::register_experiment(

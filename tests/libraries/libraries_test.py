@@ -192,6 +192,16 @@ class Libraries(unittest.TestCase):
                 for share in ("better [%]", "equal [%]"):
                     self.assertEqual(ours[stage + share], paper[0][share])
 
+    def test_the_study_judges_the_main_statements(self):
+        """Against the BFGS of each library, on all problems of Sec. 4."""
+        claims = [line for line in bench("list", "--claims").splitlines()
+                  if "| studies/whose-bfgs-" in line]
+        self.assertEqual(len(claims), 4)
+        for claim in claims:
+            for library in ("SciPy", "GSL", "NLopt", "Ceres", "dlib", "R"):
+                self.assertRegex(claim, rf"\b{library}\b")
+        self.assertIn("valid", bench("list", "--validate"))
+
     def needs_scipy(self):
         if not all(map(importlib.util.find_spec, ("numpy", "scipy"))) or \
                 not os.path.exists(BUILD + "/python/physinv"):

@@ -273,9 +273,12 @@ TEST(Digest, StudiesStandInAParagraph) {
   expect_words(page,
                {"[a-choice](docs/results/studies-a-choice.md) depends\n"});
   EXPECT_EQ(page.find("| [studies/"), page.npos) << page;
+  study.claims.push_back({.id = "S2", .says = "b", .verdict = Verdict::weaker});
+  expect_words(results_markdown({{"a", digest_json({study}, origin())}}),
+               {"studies-a-choice.md) depends, differs (weaker)\n"});
 }
 
-TEST(Digest, AStudyOfAMainStatementHasALineWithEverySetting) {
+TEST(Digest, AStudyOfAMainStatementHasTheNumberOfEverySetting) {
   Section study = section(Verdict::depends, Verdict::reproduced);
   study.experiment = "studies/a-choice";
   auto& conditions = study.claims[0].conditions;
@@ -292,10 +295,10 @@ TEST(Digest, AStudyOfAMainStatementHasALineWithEverySetting) {
       {{.key = "jpo",
         .title = "A title",
         .question = "Does it?",
-        .main_claims = {{"studies/a-choice", "P1"}, {"jpo/toy", "P1"}}}});
+        .main_claims = {{"jpo/toy", "P1"}, {"studies/a-choice", "P1"}}}});
   expect_words(
       page,
-      {"[jpo/toy P1](docs/results/jpo-toy.md).\n\n- a \\| b: **? "
+      {"[jpo/toy P1](docs/results/jpo-toy.md). a \\| b: **? "
        "depends**, A 75 (> 50), B 42 ± 3 (> 50: no), [studies/a-choice "
        "P1](docs/results/studies-a-choice.md).\n"});
 }
