@@ -46,6 +46,7 @@ struct Again {
   std::string seeds;                      ///< of all cases: "0,1,2"
   double cpu_seconds = 0;                 ///< of solving, when it was published
   std::size_t unknown = 0;                ///< cases that are not registered now
+  std::size_t of_plugins = 0;             ///< cases of experiments that are not
   std::size_t stages = 0, same_keys = 0;  ///< stored; of today's sources
   std::vector<ClaimKey> decides;          ///< what it decides of all campaigns
 
@@ -55,6 +56,12 @@ struct Again {
     return all;
   }
 };
+
+bool is_registered(const std::string& of) {
+  return registry().find(of) != nullptr ||
+         std::ranges::any_of(registry().overviews(),
+                             [&](const Overview& o) { return o.paper == of; });
+}
 
 std::string paper_of(const std::string& experiment) {
   const auto e = registry().find(experiment);
@@ -116,6 +123,10 @@ Again again_of(const NamedDigest& campaign,
   std::set<std::uint64_t> seeds;
   const Results results = published_results(folder);
   for (const CaseRecord& c : results.cases()) {
+    if (!is_registered(c.info.experiment)) {
+      ++again.of_plugins;
+      continue;
+    }
     if (!paper.empty() && paper_of(c.info.experiment) != paper) continue;
     const std::string& own = c.info.profile;
     again.cases[own.empty() ? provenance.value("profile", "") : own].push_back(
@@ -141,7 +152,8 @@ std::vector<Again> to_run_again(const std::vector<NamedDigest>& campaigns,
   for (const auto& [key, claims] : latest)
     if (paper.empty() || key == paper)
       for (const auto& [claim, found] : claims)
-        if (found.claim.verdict != Verdict::not_judged)
+        if (found.claim.verdict != Verdict::not_judged &&
+            is_registered(claim.first))
           decides[found.campaign].push_back(claim);
   std::vector<Again> all;
   for (const NamedDigest& c : campaigns) {
@@ -177,7 +189,7 @@ std::string text_of(const std::vector<ClaimKey>& claims) {
 std::string plan_text(const std::vector<Again>& all) {
   Columns table({"<campaign", "cases", "CPU time", "same key", "<decides"});
   double seconds = 0;
-  std::size_t cases = 0, unknown = 0;
+  std::size_t cases = 0, unknown = 0, of_plugins = 0;
   for (const Again& a : all) {
     table.add({a.name,
                std::to_string(a.size()),
@@ -185,6 +197,7 @@ std::string plan_text(const std::vector<Again>& all) {
                fmt::format("{}/{}", a.same_keys, a.stages),
                text_of(a.decides)});
     seconds += a.cpu_seconds, cases += a.size(), unknown += a.unknown;
+    of_plugins += a.of_plugins;
   }
   std::string text = table.text(Screen::of(stdout).room());
   text += fmt::format("{} campaigns, {} cases, {} of CPU when published\n",
@@ -194,6 +207,11 @@ std::string plan_text(const std::vector<Again>& all) {
   if (unknown > 0)
     text +=
         fmt::format("{} of these cases are no longer registered\n", unknown);
+  if (of_plugins > 0)
+    text += fmt::format(
+        "{} more cases are of experiments that this program lacks; load their "
+        "plug-in with --plugin=FILE\n",
+        of_plugins);
   return text;
 }
 
