@@ -13,7 +13,7 @@ using physinv::above;
 using physinv::Claim;
 using physinv::Condition;
 using physinv::each;
-using physinv::each_if;
+using physinv::either;
 using physinv::Index;
 using physinv::least;
 using physinv::mean_of_all;
@@ -68,39 +68,67 @@ Quantity mean_percent_better(const Bfgs& bfgs) {
   }));
 }
 
-physinv::Select of_size(Index n) { return refined().of_sizes(n, n); }
+/// Of JPO's runs `jpo`, against a library on a problem.
+using Number = Quantity (*)(const physinv::Select& jpo,
+                            const std::string& problem,
+                            const Bfgs& bfgs);
 
-Quantity f_at_the_largest(const std::string& problem, const Bfgs& bfgs) {
-  return of_experiment(
-      study_of(problem),
-      mean(of_size(sizes_of(problem).largest), against(bfgs.method, f)));
+Quantity f_of_all(const physinv::Select& jpo,
+                  const std::string& problem,
+                  const Bfgs& bfgs) {
+  return of_experiment(study_of(problem), mean(jpo, against(bfgs.method, f)));
 }
 
-Quantity growth_of_f(const std::string& problem, const Bfgs& bfgs) {
-  const Sizes n = sizes_of(problem);
-  return of_experiment(
-      study_of(problem),
-      growth_in_errors(
-          of_size(n.largest), of_size(n.smallest), against(bfgs.method, f)));
+Quantity f_at_the_largest(const physinv::Select& jpo,
+                          const std::string& problem,
+                          const Bfgs& bfgs) {
+  const Index n = sizes_of(problem).largest;
+  return of_experiment(study_of(problem),
+                       mean(jpo.of_sizes(n, n), against(bfgs.method, f)));
 }
 
-using Number = Quantity (*)(const std::string& problem, const Bfgs&);
+Quantity growth_of_f(const physinv::Select& jpo,
+                     const std::string& problem,
+                     const Bfgs& bfgs) {
+  const auto [smallest, largest] = sizes_of(problem);
+  return of_experiment(study_of(problem),
+                       growth_in_errors(jpo.of_sizes(largest, largest),
+                                        jpo.of_sizes(smallest, smallest),
+                                        against(bfgs.method, f)));
+}
 
-/// Of each library: the least of the problems whose sets are cheap, and that of
-/// Navier-Stokes, which takes hours.
+Quantity least_of(Number number,
+                  const physinv::Select& jpo,
+                  const std::vector<std::string>& problems,
+                  const Bfgs& bfgs) {
+  return least(each(problems, [&](const std::string& problem) {
+    return number(jpo, problem, bfgs);
+  }));
+}
+
+/// Alone or refined, as the paper leaves open which.
+Condition least_above(Number number,
+                      const std::vector<std::string>& problems,
+                      const std::string& label,
+                      const Bfgs& bfgs,
+                      double bound) {
+  return either(above(label, least_of(number, fit(), problems, bfgs), bound),
+                above(label + ", refined",
+                      least_of(number, refined(), problems, bfgs),
+                      bound));
+}
+
+/// Of each library: of the problems whose sets are cheap, and of Navier-Stokes,
+/// which takes hours.
 std::vector<Condition> least_above(Number number, double bound) {
+  std::vector<std::string> cheap = section4();
+  std::erase(cheap, kFlow);
   std::vector<Condition> all;
   for (const Bfgs& bfgs : of_libraries())
-    all.push_back(above(
-        bfgs.label,
-        least(each_if(
-            section4(),
-            [](const std::string& problem) { return problem != kFlow; },
-            [&](const std::string& problem) { return number(problem, bfgs); })),
-        bound));
+    all.push_back(least_above(number, cheap, bfgs.label, bfgs, bound));
   for (const Bfgs& bfgs : of_libraries())
-    all.push_back(
-        above(bfgs.label + ", Navier-Stokes", number(kFlow, bfgs), bound));
+    all.push_back(least_above(
+        number, {kFlow}, bfgs.label + ", Navier-Stokes", bfgs, bound));
   return all;
 }
 
@@ -111,19 +139,21 @@ std::vector<Condition> of_each(
 
 }  // namespace
 
-/// Of the paper: P1 of `jpo` by its direction and by its number, P3, P2.
+/// Of the paper: P1 of `jpo` by its direction and by its number, P3, P2, and
+/// Table 5 by its direction.
 std::vector<Claim> whose_bfgs_claims() {
   const auto claim = [](const char* id,
                         const char* says,
                         std::vector<Condition> conditions,
-                        const char* note = "") {
+                        const char* note,
+                        physinv::Cause cause) {
     return Claim{.id = id,
                  .where = "",
                  .from = "paper",
                  .says = says,
                  .conditions = std::move(conditions),
                  .note = note,
-                 .cause = physinv::depends("on the library")};
+                 .cause = std::move(cause)};
   };
   return {
       claim("S1",
@@ -131,26 +161,45 @@ std::vector<Claim> whose_bfgs_claims() {
             "the problems, in the mean of the four experiments",
             of_each([](const Bfgs& bfgs) {
               return above(bfgs.label + ", %", mean_percent_better(bfgs), 50);
-            })),
+            }),
+            "",
+            physinv::depends("on the library")),
       claim("S2",
             "The mean of the four is as printed with the BFGS of every library",
             of_each([](const Bfgs& bfgs) {
               return as_stated(
                   bfgs.label + ", %", mean_percent_better(bfgs), 68.5, 4);
-            })),
+            }),
+            "",
+            physinv::depends("on the library")),
       claim("S3",
             "In all settings JPO surpasses the BFGS of every library, given "
             "enough examples",
             least_above(f_at_the_largest, 0.5),
-            "Of each library the least f of refined JPO at the largest n, of "
-            "wave packet, billiards and the Kuramoto-Sivashinsky equation."),
+            "Of each library the least f at the largest n, of wave packet, "
+            "billiards and the Kuramoto-Sivashinsky equation.",
+            physinv::depends("on the library")),
       claim("S4",
             "The fraction of better problems clearly increases with the data "
             "set, with the BFGS of every library",
             least_above(growth_of_f, 2),
-            "Of each library the least difference of f of refined JPO between "
-            "the largest and the smallest n, in standard errors, of wave "
-            "packet, billiards and the Kuramoto-Sivashinsky equation.")};
+            "Of each library the least difference of f between the largest "
+            "and the smallest n, in standard errors, of wave packet, billiards "
+            "and the Kuramoto-Sivashinsky equation.",
+            physinv::fails("it fails with SciPy's BFGS as well, so it does not "
+                           "depend on the library")),
+      claim("S5",
+            "On each of the four experiments refined JPO is ahead of the BFGS "
+            "of every library",
+            of_each([](const Bfgs& bfgs) {
+              return above(bfgs.label,
+                           least_of(f_of_all, refined(), section4(), bfgs),
+                           0.5);
+            }),
+            "Of each library the least f of the four, as means over n.",
+            physinv::depends(
+                "on the library: on billiards, where losses of zero can be "
+                "reached, solvers that stop later are ahead"))};
 }
 
 }  // namespace libraries
