@@ -29,6 +29,9 @@ std::vector<std::string> solvers_of(const physinv::Evidence& e) {
     if (method.chain.front()->name() == "solve") all.push_back(method.id);
   for (const auto& id : e.results.methods(e.experiment))
     if (physinv::find_method(*experiment, id) == nullptr) all.push_back(id);
+  std::erase_if(all, [&](const std::string& solver) {
+    return !mean(refined(), against(solver, f))(e).value;
+  });
   return all;
 }
 

@@ -23,8 +23,9 @@ physinv::RunValue against(
     Share share,
     physinv::Equality equality = physinv::Equality::strict);
 
-/// Solvers by themselves, in the order of the experiment: those of the plug-in
-/// with the settings of the suite's BFGS, then those that were run from Python.
+/// Solvers by themselves that were run beside JPO, in the order of the
+/// experiment: those of the plug-in with the settings of the suite's BFGS, then
+/// those that were run from Python.
 std::vector<std::string> solvers_of(const physinv::Evidence& evidence);
 
 }  // namespace libraries
