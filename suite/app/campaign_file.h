@@ -17,7 +17,7 @@ struct FileFlag {
 /// In the order of the file: JSON if its name ends with .json or its first
 /// character is a brace, else TOML 1.0. Numbers, booleans and lists are as the
 /// command line has them. UsageError with file and line if the file does not
-/// parse, a name stands twice, or a value is empty or no text, number, boolean
+/// parse, a name is repeated, or a value is empty or no text, number, boolean
 /// or list of them.
 std::vector<FileFlag> read_campaign_file(const std::string& path);
 

@@ -21,7 +21,7 @@ struct RunEnd {
 };
 
 /// Writes the page of the store. Prints for each experiment what was measured
-/// beside what the paper has, where this profile can decide it, in at most
+/// next to what the paper has, where this profile can decide it, in at most
 /// eight lines; the page, or that a budget has no time for it; and what decides
 /// the paper's other statements.
 void conclude(const RunEnd& end);

@@ -6,7 +6,7 @@
 
 namespace physinv {
 
-/// Plug-ins go along by PHYSINV_PLUGINS.
+/// The other program loads the same plug-ins, by PHYSINV_PLUGINS.
 ExitCode conformance_verb(const Arguments& arguments) {
   ConformanceFlags flags;
   if (!parse_conformance(arguments, flags)) return ExitCode::good;

@@ -104,8 +104,8 @@ class AgainstBaseline {
       report.findings.push_back(judge(lines[i], counts_.lines[i]));
   }
 
-  /// The new lines in the place of the old ones; what is gone goes. Counts
-  /// that were not made anew, as on another processor, stay with their build.
+  /// The new lines in the place of the old ones; what is gone goes. Counts that
+  /// were not made again, as on another processor, stay with their build.
   void renew() {
     measure_digits(now_, cases_, flags_.measuring(), Screen::of(stdout));
     Baseline renewed = blank_baseline(before_.chosen);

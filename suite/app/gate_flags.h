@@ -33,7 +33,8 @@ std::vector<Case> cases_of(const Chosen& chosen,
 /// 0: as many as there are cores.
 int jobs_or_cores(int jobs);
 
-/// physinv-count: what PHYSINV_COUNT names, else the one beside this program.
+/// physinv-count: what PHYSINV_COUNT names, else the one in the folder of this
+/// program.
 std::filesystem::path counting_program();
 
 }  // namespace physinv

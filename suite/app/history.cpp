@@ -43,7 +43,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-/// Why git tells nothing of this folder: its first line and, where that is
+/// Why git says nothing of this folder: its first line and, where that is
 /// advice, its last one.
 std::string complaint_of_git() {
   if (!has_program("git")) return "git is not installed";

@@ -15,12 +15,12 @@ std::filesystem::path program_directory();
 /// The papers' numbers: what PHYSINV_PUBLISHED_DIR names, else what was
 /// installed with the program, else the sources that it was built from, or the
 /// installed suite that it was built on. The sources come last, so that an
-/// installed program never depends on what stands there by now. Throws
-/// UsageError if there are none.
+/// installed program never depends on what is there now. Throws UsageError if
+/// there are none.
 std::filesystem::path published_directory();
 
-/// Goes on as the program of this name beside this one. EnvironmentError with
-/// what would make it if it cannot start.
+/// Runs the program of this name, in the folder of this one, in place of this
+/// process. EnvironmentError with what would make it if it cannot start.
 [[noreturn]] void go_on_as(const std::string& name,
                            const Arguments& arguments,
                            std::string_view remedy);

@@ -20,7 +20,7 @@ struct Loaded {
 
 /// Prints what the catalog warns of; to another stream than standard output
 /// only where nothing lacks. UsageError if there is no directory, StoreError if
-/// something is damaged: results.json is held against what it is made from.
+/// something is damaged: results.json is compared with what it is made from.
 Loaded load(const std::string& directory, std::FILE* warnings = stdout);
 
 /// What results.json says, made again.

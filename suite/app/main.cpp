@@ -100,7 +100,7 @@ bool answered(const std::string& flag) {
 
 ExitCode dispatch(Arguments arguments) {
   refuse_empty(arguments);
-  // Without registering, which takes longer than all else.
+  // Without registering, which takes longer than everything else.
   if (arguments.size() == 1 && answered(arguments[0])) return ExitCode::good;
   register_all(registry());
   load_plugins(arguments);

@@ -42,7 +42,7 @@ std::map<std::string, std::vector<Picture>> kept_pictures(
     const std::filesystem::path& directory,
     const nlohmann::ordered_json& digest);
 
-/// What results.json tells of its stages: ends, counts, times, and the median
+/// What results.json says of its stages: ends, counts, times, and the median
 /// loss in place of all losses. Without curves, estimates or problems.
 Results published_results(const std::filesystem::path& directory);
 /// The same of its text.

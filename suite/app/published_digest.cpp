@@ -37,8 +37,8 @@ std::map<std::string, double> cpu_seconds(const Json& results) {
   return seconds;
 }
 
-/// results.json.gz beside a digest: they tell of each other, unless both are
-/// of before they did.
+/// results.json.gz in the folder of a digest: they name each other, unless both
+/// are older than that.
 Json results_beside(const fs::path& folder, const Json& digest) {
   const fs::path path = folder / "results.json.gz";
   Json results = parse_results(gunzipped(read_file(path), kLargestData), path);

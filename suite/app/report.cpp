@@ -36,7 +36,8 @@ std::string unknown_text(const Results& results) {
   return fmt::format("{}", fmt::join(unknown, ", "));
 }
 
-/// Says how the gating claims stand; ExitError if one fails unexpectedly.
+/// Prints the verdicts of the gating claims; ExitError if one fails
+/// unexpectedly.
 void check_claims(const ClaimTally& j) {
   const auto failing =
       j.known_misses.size() + j.misses.size() + j.explained.size();

@@ -141,9 +141,9 @@ Again again_of(const NamedDigest& campaign,
   return again;
 }
 
-/// Those of `campaigns` below `folder` that decide a claim (`latest` is what
-/// all of them come to) of this paper, with the paper's cases alone, or,
-/// without a paper, all of them; the longest first.
+/// Those of `campaigns` below `folder` that decide a claim of this paper
+/// (`latest` are the verdicts of all campaigns), with the paper's cases alone,
+/// or, without a paper, all of them; the longest first.
 std::vector<Again> to_run_again(const std::vector<NamedDigest>& campaigns,
                                 const Papers& latest,
                                 const fs::path& folder,
@@ -267,8 +267,8 @@ void publish(const std::string& store, const fs::path& folder) {
       folder, loaded, sections, provenance(loaded, sections, numbers));
 }
 
-/// Of the claims that these campaigns decide, those that come to another
-/// verdict than the published one; how many.
+/// Of the claims that these campaigns decide, those whose verdict differs from
+/// the published one; how many.
 std::size_t show_changes(const std::vector<Again>& all,
                          const Papers& published,
                          const Papers& here) {

@@ -185,7 +185,7 @@ std::string go_on_text(const RunFlags& flags) {
                                : "the same command without --fresh resumes";
 }
 
-/// Runs the cases again beside the store, only for their times.
+/// Runs the cases again outside the store, only for their times.
 Repetitions repeat(const Prepared& prepared,
                    const RunFlags& flags,
                    const std::vector<CaseRecord>& cases,

@@ -11,7 +11,8 @@ namespace physinv {
 /// Those that the user's cache keeps; a line on standard error if it cannot.
 Trials known_speeds();
 
-/// What published campaigns took: durations.csv beside the papers' numbers.
+/// What published campaigns took: durations.csv, in the folder of the papers'
+/// numbers.
 std::filesystem::path durations_file();
 
 /// Of these cases, see forecast; nothing is run.

@@ -20,7 +20,7 @@ struct Verb {
 
 struct RunEnd;
 
-/// What stands in a program's help, besides what all programs have.
+/// What a program's help says in addition to what all programs have.
 struct Program {
   std::string_view name;
   std::vector<Verb> verbs;

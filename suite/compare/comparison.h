@@ -1,6 +1,6 @@
 /// Campaigns side by side: commits, machines, precisions. Stages pair by
 /// experiment, method, n, seed and stage; whatever else differs is what is
-/// compared. The first side is the one that the others are held against.
+/// compared. The others are compared with the first side.
 #pragma once
 
 #include <compare>
@@ -57,7 +57,7 @@ struct Compared {
   double change() const;
 };
 
-/// A side held against the first, over the pairs of a line: the stages that
+/// A side compared with the first, over the pairs of a line: the stages that
 /// both have.
 struct Against {
   std::size_t pairs = 0;

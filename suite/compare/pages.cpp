@@ -25,7 +25,7 @@ Cell number_cell(double value, const char* format) {
 }
 
 /// Labels are folders as they were typed: no column is as wide as a path,
-/// unless that is what tells two of them apart.
+/// unless only that distinguishes two of them.
 std::vector<std::string> heads_of(const std::vector<std::string>& labels) {
   std::vector<std::string> heads;
   for (const auto& label : labels) heads.push_back(shortened(label, 24));

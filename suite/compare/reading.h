@@ -24,8 +24,8 @@ struct Quartiles {
 /// Of a list that is not empty; infinities are numbers.
 Quartiles quartiles_of(const std::vector<double>& values);
 
-/// Seconds of solving a stage, over its repetitions. A clock that came to no
-/// number makes them infinite.
+/// Seconds of solving a stage, over its repetitions. A clock without a number
+/// makes them infinite.
 struct Times {
   Quartiles wall, cpu;
   int threads = 1;  ///< 0: not known
@@ -92,8 +92,8 @@ double loss_ratio(const Reading& a, const Reading& b);
 /// or diverges spends less and gains nothing.
 bool costs_compare(const Reading& a, const Reading& b);
 
-/// Of two stages whose costs compare. Held against each other is CPU time where
-/// both are of one core; else wall time, unless one of both was crowded.
+/// Of two stages whose costs compare. CPU times are compared where both are of
+/// one core; else wall time, unless one of both was crowded.
 struct TimeRatio {
   std::optional<double> value;  ///< b over a
   std::string why;              ///< there is none: "failed", "crowded", ...

@@ -192,7 +192,7 @@ std::optional<Regression> regression(Aspect aspect,
   auto found = worse_pairs(aspect, c, factor);
   if (aspect != Aspect::time || found) return found;
   // Nothing passes because no time is known; stages that had none before they
-  // ended well have none to be held against.
+  // ended well have none to compare with.
   const TimedPairs timed = timed_pairs(c);
   if (timed.compared > 0 || timed.unknown == 0) return {};
   return Regression{.worst = fmt::format("it has no times to compare with: {}",

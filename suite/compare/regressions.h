@@ -21,8 +21,8 @@ std::optional<Aspect> aspect_of(std::string_view word);
 struct Regression {
   std::size_t worse = 0, judged = 0;  ///< pairs; of claims claims
   std::string worst;                  ///< "jpo/... solve: converged -> failed"
-  /// Nothing but time, or no time known that others can be held against. A
-  /// stage that ends worse has no cost to judge, and it is not this.
+  /// Nothing but time, or no known time to compare with. A stage that ends
+  /// worse has no cost to judge, and it is not this.
   bool of_time = false;
   std::string text() const;
 };

@@ -38,7 +38,7 @@ std::string summary_text(const GateReport& report);
 /// Where the clock was asked and decided nothing; else empty.
 std::string undecided_text(const GateReport& report);
 /// "largest relative change 2e-16 in x of jpo/.../solve, 3e-15 in the best loss
-/// of ..."; empty if no stage changed by what its line tells.
+/// of ..."; empty if no stage changed by the numbers of its line.
 std::string largest_text(const GateReport& report);
 /// Notes, everything that is not as it was, and the summary.
 std::string terminal_text(const GateReport& report);

@@ -69,7 +69,7 @@ bool same_bits(const StageLine& a, const StageLine& b);
 std::string case_of(std::string_view stage_name);
 
 std::string to_text(const StageLine& line);
-/// Throws std::runtime_error; also if a field is missing or stands twice.
+/// Throws std::runtime_error; also if a field is missing or repeated.
 StageLine stage_line(std::string_view text);
 
 }  // namespace physinv

@@ -1,4 +1,4 @@
-/// A campaign held against a baseline, stage by stage.
+/// A campaign compared with a baseline, stage by stage.
 #pragma once
 
 #include <optional>
@@ -34,9 +34,9 @@ struct Reasons {
 };
 
 /// How far a stage of other bits is from the baseline's, as relative changes of
-/// what its line tells; 0 where that is the same to the digits held.
+/// the numbers of its line; 0 where that is the same to the digits held.
 struct Distance {
-  std::optional<double> x;  ///< of the estimates by their norm, if it tells
+  std::optional<double> x;  ///< of the estimates by their norm, or none
   double loss = 0;          ///< the largest of the three
   std::string_view which;   ///< "best", "median", "worst"
 };

@@ -26,7 +26,7 @@ struct BuildInfo {
   std::string_view fingerprint;
   std::string_view interfaces;  ///< hash of compiler, flags and headers: what
                                 ///< plug-ins must be built with
-  std::string_view foundation;  ///< hash of what every stage stands on:
+  std::string_view foundation;  ///< hash of what every stage depends on:
                                 ///< bit_flags, libraries that
                                 ///< compute, and run_stage.{h,cpp}
   std::string_view version;     ///< of this suite

@@ -294,7 +294,7 @@ class Campaign {
       workers.ask_to_leave(w);
   }
 
-  /// Cases that were left go on, in as many threads as there are cores for.
+  /// Cases that were left continue, in as many threads as there are cores for.
   void resume_left(Workers& workers) {
     for (const std::size_t w : std::exchange(left_, {})) {
       const std::size_t i = running_[w];
@@ -491,7 +491,7 @@ class Campaign {
     result_.seconds = now().wall - begin_;
   }
 
-  /// What this process does beside drawing data is bookkeeping, and what the
+  /// Bookkeeping is what this process does, except drawing data, and what the
   /// workers do outside of stages. Waiting for the disk costs no CPU, and the
   /// workers nothing unless they have nothing to do.
   void note_bookkeeping() {

@@ -22,8 +22,8 @@ struct CampaignOptions {
   int threads = 1;  ///< inside a case
   /// Seconds after which no further case is started; 0 for none.
   double time_budget = 0;
-  /// With a budget: the queue (indices of cases) as it should go on, given the
-  /// final median losses of the cases that finished.
+  /// With a budget: the queue (indices of cases) as it should continue, given
+  /// the final median losses of the cases that finished.
   std::function<std::vector<std::size_t>(
       std::vector<std::size_t> queue,
       const std::map<std::size_t, double>& finished)>
@@ -36,13 +36,13 @@ struct CampaignOptions {
   bool resume = true;
   bool trace = false;  ///< record hashes of all iterates
   /// Once no case waits, give free cores (of jobs x threads) to running cases:
-  /// stages that save their state go on in more threads.
+  /// stages that save their state continue in more threads.
   bool share_cores = false;
   /// Seconds that a case runs before it is asked for that.
   double share_seconds = 5;
   /// Seconds between the checkpoints of a running stage.
   double checkpoint_seconds = 60;
-  /// Seconds after which a worker is named that tells nothing and computes
+  /// Seconds after which a worker is named that reports nothing and computes
   /// nothing.
   double still_seconds = 60;
   /// Take the lock of the store from its owner, where there is no flock.
@@ -82,10 +82,10 @@ std::vector<std::size_t> largest_first(std::vector<std::size_t> queue,
                                        const std::vector<double>& work);
 
 /// Runs what the store does not hold. Only this process writes to it; finished
-/// stages go to the disk together, every two seconds (or as often as stages
-/// under way lay their state down, if that is more often). SIGINT and SIGTERM
-/// end the campaign with what has finished; stages under way that can lay their
-/// state down. A case whose worker is killed from outside is tried again.
+/// stages go to the disk together, every two seconds (or as often as running
+/// stages save their state, if that is more often). SIGINT and SIGTERM end the
+/// campaign with what has finished; running stages save their state if they
+/// can. A case whose worker is killed from outside is tried again.
 /// `options_json` enters the context.
 CampaignResult run_campaign(Prepared prepared,
                             const CampaignOptions& options,

@@ -84,7 +84,7 @@ struct Experiment {
   Report report;      ///< empty: claims alone
 };
 
-/// What stands in front of several experiments: what their paper says of them
+/// What pages show before several experiments: what their paper says of them
 /// together, tables of all.
 struct Overview {
   std::string paper;  ///< jpo: of all experiments jpo/...

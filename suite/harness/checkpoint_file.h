@@ -12,7 +12,7 @@ namespace physinv {
 /// Whether a stage is to end where it saves its state.
 enum class Leaving {
   no,
-  if_saved,  ///< to go on elsewhere
+  if_saved,  ///< to continue elsewhere
   now        ///< even if the state cannot be saved
 };
 
@@ -40,7 +40,7 @@ class CheckpointFile final : public Checkpoint {
   std::optional<Archive> last() override;
   /// Has the stage gone on from a state?
   bool restored() const { return restored_; }
-  /// The stage cannot go on from there.
+  /// The stage cannot continue from there.
   void drop();
   bool due() override;
   /// Since the stage began, in all processes that ran it.

@@ -61,7 +61,7 @@ std::string drain(std::array<pollfd, 2> ends,
   return "";
 }
 
-/// Its status as waitpid gives it; kills it if it goes on until `last`, which
+/// Its status as waitpid gives it; kills it if it still runs at `last`, which
 /// it may do without any output.
 int wait_until(pid_t pid, double last, bool& killed) {
   int status = 0;

@@ -23,8 +23,8 @@ struct Ended {
 /// Does PATH have it?
 bool has_program(const std::string& name);
 
-/// Finds the program in PATH unless it has a slash. Nothing stands in its
-/// standard input.
+/// Finds the program in PATH unless it has a slash. Its standard input is
+/// empty.
 Ended run_child(std::vector<std::string> arguments,
                 const ChildLimits& limits = {});
 

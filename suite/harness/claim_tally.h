@@ -1,5 +1,5 @@
-/// How the gating claims of a report stand, for `report --check`. A claim that
-/// fails and states why (`Fails:` in claims.md) is known to; what differs,
+/// Verdicts of the gating claims of a report, for `report --check`. A claim
+/// that fails and states why (`Fails:` in claims.md) is known to; what differs,
 /// depends or contradicts itself is explained by its cause.
 #pragma once
 

@@ -11,8 +11,8 @@ namespace physinv {
 /// first; no line is longer than the room.
 class Columns {
  public:
-  /// Heads; those that begin with '<' stand on the left of their column, the
-  /// others on the right.
+  /// Heads; those that begin with '<' are at the left of their column, the
+  /// others at the right.
   explicit Columns(std::vector<std::string> heads);
   void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
   std::string text(std::size_t room) const;

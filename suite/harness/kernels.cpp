@@ -1,4 +1,4 @@
-// Bookkeeping: what a campaign pays beside its stages.
+// Bookkeeping: what a campaign costs in addition to its stages.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 

@@ -17,7 +17,7 @@ struct Outside {
   std::string_view project;  ///< what the paths of its sources begin with
   std::string_view root;     ///< where the project's sources were built
   std::string_view data;     ///< of the installed suite: published numbers
-  std::string_view build;    ///< of the suite whose headers it was built with
+  std::string_view build;    ///< of the suite that it was built with
   bool plugin = false;
   std::span<const SourceFile> sources;
   /// Of the compiled ones those that include nothing but sources of numbers:

@@ -1,4 +1,4 @@
-/// Which processor this is, for records and pages. No number and no key hangs
+/// Which processor this is, for records and pages. No number and no key depends
 /// on it.
 #pragma once
 
@@ -9,10 +9,10 @@ namespace physinv {
 
 /// Name of the processor from the text of /proc/cpuinfo: its "model name"; on
 /// aarch64, where Linux writes none, who designed the core and which it is
-/// ("ARM Neoverse-N1", "0x61 part 0x022" if not known here). `board` is what
-/// the device tree says of the machine ("Raspberry Pi 4 Model B"), may be
-/// empty, and stands for what the text does not tell. Empty if it is not known.
-/// Numbers of parts: Arm, Main ID Register, MIDR_EL1.
+/// ("ARM Neoverse-N1", "0x61 part 0x022" if not known here). `board` is the
+/// machine's name in the device tree ("Raspberry Pi 4 Model B"), may be empty,
+/// and stands for what the text does not say. Empty if it is not known. Numbers
+/// of parts: Arm, Main ID Register, MIDR_EL1.
 std::string processor_name(std::string_view cpuinfo, std::string_view board);
 
 /// As the processor that runs this calls itself; empty if unknown.

@@ -35,7 +35,7 @@ class Registry {
 
   void add(Experiment experiment);
   void add(Overview overview);
-  /// What stands in other files than its experiment, in either order.
+  /// What is registered in other files than its experiment, in either order.
   void add_claims(const std::string& experiment, std::vector<Claim> claims);
   void add_report(const std::string& experiment, Report report);
   const Experiments& experiments() const { return experiments_; }
@@ -63,7 +63,7 @@ class Registry {
                            const Overrides& overrides = {}) const;
 
  private:
-  /// To add what stands elsewhere; null if there is none of this name.
+  /// To add what other files register; null if none has this name.
   Experiment* registered(const std::string& name);
 
   Experiments experiments_;

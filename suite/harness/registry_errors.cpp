@@ -213,7 +213,7 @@ void validate(const Registry& registry, const std::vector<Case>& cases) {
       registry, [&](const Experiment& e) { return chosen.contains(&e); });
   if (wrong.empty()) return;
   const auto text = fmt::format("{}", fmt::join(wrong, "; "));
-  // A mistake of the suite, or of who built on it.
+  // A mistake in the suite's sources, or in those of a program built on it.
   if (outsides().empty()) throw std::logic_error(text);
   throw UsageError(text);
 }

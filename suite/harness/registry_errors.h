@@ -15,9 +15,9 @@ namespace physinv {
 /// any.
 void validate(const Registry& registry, const std::vector<Case>& cases);
 
-/// Experiments of the suite that this program leaves out; one that ends with a
-/// star stands for all that begin so. Claims may ask for runs of them: they are
-/// not there, and checked in the program over all. Replaces those named before.
+/// Experiments that this program leaves out; one that ends with a star stands
+/// for all that begin so. Claims may ask for runs of them: they are not there,
+/// and checked in the program over all. Replaces those named before.
 void name_elsewhere(std::vector<std::string> experiments);
 bool is_elsewhere(std::string_view experiment);
 

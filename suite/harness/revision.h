@@ -1,7 +1,7 @@
-/// Which revision of its sources a program or plug-in was linked from. A source
-/// that is written at build time tells it (cmake/revision.cmake), so that
-/// nobody asks git where the program runs, and what became of the sources since
-/// does not matter.
+/// Which revision of its sources a program or plug-in was linked from. It is in
+/// a source that is written at build time (cmake/revision.cmake), so that the
+/// program needs no git when it runs, and later changes of the sources do not
+/// matter.
 #pragma once
 
 #include <string>

@@ -33,7 +33,7 @@ StageRecord blank(const Case& c, Index position, const std::string& revision) {
   return r;
 }
 
-/// Tells how a stage is doing, ten times a second at most.
+/// Reports the progress of a stage, ten times a second at most.
 Probe::Observer observer(const CaseHooks& hooks) {
   if (!hooks.progress) return {};
   return [&hooks, last = now().wall](Index i, VectorIn<double> loss) mutable {

@@ -66,9 +66,9 @@ void check_outcome(Outcome& out, const Oracle& oracle) {
   if (out.evaluations.size() == 0) out.evaluations.setZero(n);
 }
 
-/// Of a method from outside iterations and evaluations are what was counted,
-/// its own numbers stand beside them as arrays. Evaluations are the mean of the
-/// examples, as along the curve.
+/// Iterations and evaluations of a method from outside are what was counted;
+/// its own numbers are stored next to them as arrays. Evaluations are the mean
+/// of the examples, as along the curve.
 void take_counts(Outcome& out, const Oracle& oracle, const Probe& probe) {
   const auto take = [&](const char* name, Vector<double>& own, double counted) {
     if (own.size() > 0) out.arrays[ArrayKey::own(name)] = own.transpose();
@@ -121,8 +121,8 @@ void unify(StageRecord& r, Outcome& out) {
   for (auto& [name, array] : out.arrays) unify_nan(array);
 }
 
-/// What a stage that failed has run. Who runs a problem itself tells its counts
-/// only at its end: then they are not known.
+/// What a stage that failed has run. A method that runs the problem itself
+/// reports its counts only at its end: then they are not known.
 Counts counts_of_failure(const Oracle& oracle) {
   return oracle.handed_out() ? unknown_counts() : oracle.counts();
 }

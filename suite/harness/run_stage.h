@@ -1,6 +1,6 @@
 /// Runs one stage and fills its record with everything that is a result. All
 /// numbers pass through here, so these two files are part of every content
-/// key: what only names, shows or counts stands elsewhere.
+/// key: what only names, shows or counts is elsewhere.
 #pragma once
 
 #include <optional>
@@ -25,7 +25,7 @@ void run_stage(const Case& c,
                Checkpoint* checkpoint,
                StageRecord& record);
 
-/// Those of a stage that tells nothing of what it ran.
+/// Those of a stage that reports nothing of what it ran.
 Counts unknown_counts();
 
 /// A finished stage as the next one sees it.

@@ -16,28 +16,28 @@
 namespace physinv {
 
 /// Sources and who includes whom. From a root one reaches what it includes,
-/// and from a header x.h its implementation x.cpp beside it. A header whose
-/// implementation has another name must be a root itself; a test lists sources
-/// that nothing reaches.
+/// and from a header x.h its implementation x.cpp in the same folder. A header
+/// whose implementation has another name must be a root itself; a test lists
+/// sources that nothing reaches.
 class SourceGraph {
  public:
-  /// `foundation` enters every fingerprint. Sources from outside stand beside
+  /// `foundation` enters every fingerprint. Sources from outside are added to
   /// the suite's, under the names of their projects.
   SourceGraph(std::string_view foundation,
               std::span<const SourceFile> files,
               std::span<const Outside> outsides = {});
 
   /// The file that a path ends in, "" if there is none; compilers name files
-  /// in full. A project's own files go by their path inside of it, too.
+  /// in full. A project's own files are named by their path inside it, too.
   std::string find(std::string_view path) const;
 
   /// Everything that the roots reach; of a chain, what any of its stages do.
   std::set<std::string> closure(const Sources& sources) const;
   std::set<std::string> closure(const std::vector<Sources>& chain) const;
 
-  /// Roots that are no files, lines without effect that do not stand there,
-  /// and included headers of the project that the graph does not know: one
-  /// text each.
+  /// Roots that are no files, lines without effect that are not in the file,
+  /// and included headers of the project that the graph does not know: one text
+  /// each.
   std::vector<std::string> errors(const Sources& sources) const;
 
   /// 32 hexadecimal digits over path and content of a chain's closure.
@@ -76,7 +76,7 @@ class SourceGraph {
 /// Of this build.
 const SourceGraph& project_sources();
 
-/// Does a stage stand in a program or plug-in on the installed suite?
+/// Is a stage of a program or plug-in that uses the installed suite?
 bool is_from_outside(const Stage& stage);
 
 /// A file as a compiler names it, by its path from the root of the suite's

@@ -1,5 +1,5 @@
-/// Which workers stand still: they have a case at hand, tell nothing of it and
-/// compute nothing, as when they wait for a lock whose owner is gone.
+/// Which workers stand still: they have a case at hand, report nothing of it
+/// and compute nothing, as when they wait for a lock whose owner is gone.
 #pragma once
 
 #include <cstddef>

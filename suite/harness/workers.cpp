@@ -43,7 +43,7 @@ Leaving asked() {
                             : Leaving::no;
 }
 
-/// If not all can start, a case goes on with those that there are.
+/// If not all can start, a case continues with those that did.
 void set_count(std::unique_ptr<Threads>& threads, int count) {
   if (threads->count() == count) return;
   try {

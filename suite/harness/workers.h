@@ -14,14 +14,14 @@
 
 namespace physinv {
 
-/// What a worker tells.
+/// What a worker reports.
 struct WorkerEvent {
   enum class Kind {
     stage_started,
     progress,
     stage_done,
     case_done,
-    left,  ///< as `ask_to_leave` asked; submitted again, the case goes on
+    left,  ///< as `ask_to_leave` asked; submitted again, the case continues
     died
   };
   Kind kind{};
@@ -63,8 +63,8 @@ class Workers {
   /// A worker that has started a stage leaves its case as soon as a stage has
   /// saved its state or ended; never, if none does.
   void ask_to_leave(std::size_t worker);
-  /// Stages under way lay their state down where they can, and their workers
-  /// leave: they die, and none takes their place.
+  /// Running stages save their state where they can, and their workers leave:
+  /// they die and are not replaced.
   void dismiss();
   /// Has one a case at hand?
   bool busy() const;

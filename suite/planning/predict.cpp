@@ -111,7 +111,7 @@ std::vector<Trial> known_trials(const Sizes& s, const Trials& trials) {
     const Trial* known = trials.known(c, training_only);
     return known == nullptr ? Trial() : *known;
   });
-  // Without the first there is nothing to go by.
+  // Without the first there is no estimate.
   if (all.front().empty()) return {};
   std::erase_if(all, [](const Trial& trial) { return trial.empty(); });
   return all;

@@ -32,7 +32,7 @@ std::string output_pattern(const fs::path& directory) {
 }
 
 /// What the largest of these tasks needs and a margin; nothing if the user
-/// asks, or if no task tells.
+/// asks, or if it is known of no task.
 std::string memory_option(const Submission& s,
                           const std::vector<std::size_t>& tasks,
                           const std::vector<std::string>& sbatch_options) {
@@ -128,8 +128,8 @@ bool is_sound(const Submission& s) {
          });
 }
 
-/// The id in what sbatch prints: warnings may stand before it, a cluster's
-/// name after it.
+/// The id in what sbatch prints: warnings may come before it, a cluster's name
+/// after it.
 std::string job_id(const std::string& output) {
   constexpr std::size_t kLongestId = 20;
   std::istringstream lines(output);
@@ -148,7 +148,7 @@ struct SlurmRefuses : EnvironmentError {
   using EnvironmentError::EnvironmentError;
 };
 
-/// " (MaxArraySize is 1001)" as scontrol tells, or nothing.
+/// " (MaxArraySize is 1001)" as scontrol prints it, or nothing.
 std::string array_limit() {
   constexpr std::string_view kName = "MaxArraySize";
   if (!has_program("scontrol")) return "";

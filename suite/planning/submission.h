@@ -39,7 +39,7 @@ struct Submission {
   std::filesystem::path shard(std::size_t task) const;
 };
 
-/// How a task stands, by what its store holds.
+/// The state of a task, from what its store holds.
 struct TaskState {
   std::size_t done = 0;    ///< cases all of whose stages have a result
   std::size_t failed = 0;  ///< cases with a stage that failed

@@ -33,7 +33,7 @@ double bytes(const Batch<double>& b) {
   return 8.0 * static_cast<double>(b.size());
 }
 
-/// `cut` ran in place of `c`. A stage that did not end by itself would go on
+/// `cut` ran in place of `c`. A stage that did not end by itself would continue
 /// to its last iteration at the same speed.
 StageTrial trial_of(const Case& c, const Case& cut, const StageRecord& r) {
   const auto at = static_cast<std::size_t>(r.position);
@@ -132,7 +132,7 @@ json to_json(const StageTrial& t) {
   return {t.n, t.seconds, t.setup, t.measure, t.points, t.memory, t.kept};
 }
 
-/// std::exception if no trial comes to it.
+/// std::exception if no trial reaches it.
 StageTrial from_json(const json& j) {
   const std::vector<double> v = j;
   for (const double value : v)

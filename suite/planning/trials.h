@@ -17,7 +17,7 @@ struct Case;
 struct StageTrial {
   double n = 0;        ///< samples of the trial
   double seconds = 0;  ///< of solving; of a stage that was cut, as its counted
-                       ///< operations go on
+                       ///< operations continue
   double setup = 0;    ///< seconds, warm-up included
   double measure = 0;  ///< seconds, of the whole curve
   double points = 0;   ///< of the curve

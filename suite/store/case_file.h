@@ -7,11 +7,11 @@
 ///                                     x}
 ///                             /arrays/<name>    key, hash, how it ran
 ///
-/// with attributes on the right; arrays have their axes, unit and names. All
-/// of them stand in docs/data.md. Examples are the first axis, points of a
+/// with attributes on the right; arrays have their axes, unit and names.
+/// docs/data.md lists all of them. Examples are the first axis, points of a
 /// curve are. Version 1 had no attributes but case, hash and key, and other
 /// shapes; version 2 had statuses as an enumeration, and texts that end in a
-/// zero. Both are read, and written anew once a stage is added.
+/// zero. Both are read, and written again once a stage is added.
 ///
 /// What is read back has the types, shapes and hashes that it was written
 /// with. All of the data is finite, and a stage's arrays are what storable.h
@@ -47,8 +47,8 @@ class CaseFile {
  public:
   /// An empty one, in memory.
   explicit CaseFile(const std::string& case_name);
-  /// Reads and verifies what stands in the folder of case files; StoreError if
-  /// it is missing, damaged or of another case.
+  /// Reads and verifies what is in the folder of case files; StoreError if it
+  /// is missing, damaged or of another case.
   CaseFile(const Folder& folder, const std::string& case_name);
   /// The same of a file's bytes; `path` is for messages.
   CaseFile(std::string bytes,
@@ -64,15 +64,15 @@ class CaseFile {
   /// StoreError, with the array's name, unless all of it has the hash.
   CaseData data() const;
 
-  /// Replaces what stands at the record's position.
-  /// `hash` is arrays_hash(record).
+  /// Replaces what is stored at the record's position. `hash` is
+  /// arrays_hash(record).
   void put_stage(const StageRecord& record, const std::string& hash);
   /// True if the arrays of this key and with this hash are there.
   bool has_stage(const StageRecord& record, const std::string& hash) const;
   /// Fills in the arrays of a record; StoreError if they lack the hash.
   void read_stage(StageRecord& record, const std::string& hash) const;
 
-  /// The whole file, as it stands on disk.
+  /// The whole file, as it is on disk.
   std::string bytes() const;
   void save(const Folder& folder) const;
 

@@ -42,9 +42,9 @@ class Catalog {
   /// What a known case is, with the keys that count.
   CaseInfo info_of(const std::string& case_name) const;
 
-  /// The stage with this content key, of whichever case; one that came to a
-  /// result if there is one. Nothing if its arrays are gone. With `among`,
-  /// only of these cases.
+  /// The stage with this content key, of whichever case; one with a result if
+  /// there is one. Nothing if its arrays are gone. With `among`, only of these
+  /// cases.
   std::optional<StageRecord> find(
       const std::string& key,
       const std::set<std::string>* among = nullptr) const;

@@ -82,7 +82,7 @@ void each_field(MaybeConst<StageRecord> auto& r, F&& f) {
   f("run", r.run, true);
 }
 
-/// All but `about`, which stands in the case file alone.
+/// All but `about`, which only the case file has.
 template <class F>
 void each_field(MaybeConst<CaseInfo> auto& info, F&& f) {
   f("name", info.name);

@@ -108,7 +108,7 @@ fs::path followed(fs::path path) {
 }
 
 /// The descriptor of this process that /dev/stdout, /dev/fd/3 and the like
-/// stand for; its position counts, not that of a file opened anew.
+/// stand for; its position counts, not that of a file opened again.
 FileDescriptor own_descriptor(const fs::path& path) {
   std::error_code error;
   const auto own = fs::path("/proc") / std::to_string(::getpid()) / "fd";

@@ -71,7 +71,7 @@ bool is_file(const std::filesystem::path& path);
 bool is_folder(const std::filesystem::path& path);
 bool is_there(const std::filesystem::path& path);
 
-/// Of a file that a user names, or of the suite's own.
+/// Of a file that a user names, or of one that the suite makes.
 std::string read_file(const std::filesystem::path& path,
                       std::uint64_t limit = kLargestText);
 

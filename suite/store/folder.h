@@ -1,6 +1,6 @@
 /// A directory that holds what the suite makes, such as a store. Its files are
 /// reached through it, wherever its name points by now, and no link in it is
-/// followed: what stands outside is not touched.
+/// followed: what is outside is not touched.
 #pragma once
 
 #include <filesystem>
@@ -33,7 +33,7 @@ class Folder {
   bool has(const std::string& name) const;
   std::vector<std::string> names() const;
 
-  /// A regular file, without waiting; StoreError for all else.
+  /// A regular file, without waiting; StoreError for anything else.
   FileDescriptor open(const std::string& name,
                       int flags,
                       std::string_view what) const;
@@ -55,7 +55,8 @@ class Folder {
 
  private:
   friend class FileGroup;
-  /// A new file beside `name`, which it may replace: its name, and itself open.
+  /// A new file in the folder of `name`, which it may replace: its name, and
+  /// itself open.
   std::pair<std::string, FileDescriptor> write_aside(
       const std::string& name, std::string_view bytes) const;
   void put_in_place(const std::string& aside, const std::string& name) const;

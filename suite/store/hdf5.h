@@ -44,7 +44,7 @@ void check(herr_t result, std::string_view what);
 /// another form than what is written here (hdf5_form.h).
 Handle new_file();
 Handle open_image(std::string bytes);
-/// The bytes that would stand on disk.
+/// The bytes that would be on disk.
 std::string image(const Handle& file);
 
 Handle create_group(hid_t parent, const std::string& name);
@@ -69,9 +69,8 @@ void write(hid_t parent,
            const std::string& name,
            const std::vector<double>& value,
            const Note& note = {});
-/// As whole numbers of 32 bits, which every reader has. Their words stand
-/// beside them in the attributes flag_values and flag_meanings, as the CF
-/// conventions have it.
+/// As whole numbers of 32 bits, which every reader has. Their words are in the
+/// attributes flag_values and flag_meanings, as in the CF conventions.
 void write(hid_t parent,
            const std::string& name,
            const std::vector<Status>& value,
@@ -83,7 +82,7 @@ void write_cube(hid_t parent,
                 Index parts,
                 const Note& note = {});
 
-/// What stands beside an array.
+/// What describes an array.
 Note note(hid_t parent, const std::string& name);
 /// How many axes an array has.
 int rank(hid_t parent, const std::string& name);

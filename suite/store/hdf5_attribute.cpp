@@ -8,9 +8,9 @@
 namespace physinv::hdf5 {
 namespace {
 
-/// What fits into the header of an object, where attributes stand.
+/// What fits into the header of an object, where attributes are stored.
 constexpr std::size_t kLongestText = 1 << 16;
-/// The same, beside a name and a type.
+/// The same, next to a name and a type.
 constexpr std::size_t kLongestPart = 60000;
 
 hid_t scalar() {

@@ -16,12 +16,12 @@ struct Merged {
 };
 
 /// Writes to `out` what the unsharded campaign would have left there, apart
-/// from times. A stage that stands in several shards must be the same in all.
+/// from times. A stage that several shards have must be the same in all.
 /// UnreadableInput, naming both directories, if shards disagree about a stage,
 /// the campaign's cases and what they run, the profile or the fingerprint of
-/// the numerics; also if `out` is a shard or holds a campaign of its own.
-/// What an earlier merge left in `out` takes part like a shard, so that merges
-/// can be repeated and continued.
+/// the numerics; also if `out` is a shard or holds a campaign of its own. What
+/// an earlier merge left in `out` takes part like a shard, so that merges can
+/// be repeated and continued.
 Merged merge(const std::vector<std::filesystem::path>& shards,
              const std::filesystem::path& out,
              const LockOptions& lock = {});

@@ -5,8 +5,8 @@
 ///   keys      content keys of the cases asked for here
 ///   stages    names of their stages
 ///   profile, fingerprint, context   as for results.json
-///   results   checksum of the results.json that the plan found, which tells of
-///             an earlier context until it is written again
+///   results   checksum of the results.json that the plan found, which has an
+///             earlier context until it is written again
 ///   checksum  CRC-32C of the rest, compact and sorted
 ///
 /// Version 1 had no checksum, recipes and keys; it is read with a warning.

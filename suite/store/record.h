@@ -16,13 +16,13 @@
 
 namespace physinv {
 
-/// What stands in the columns of an array of the problem.
+/// What the columns of an array of the problem are.
 struct Meaning {
   std::string names;       ///< "v_x, v_y", or of a field "temperature (y, x)"
   std::string unit = "1";  ///< of all of them
 };
 
-/// What a case is about. It stands in the case's file and decides nothing.
+/// What a case is about. It is in the case's file and decides nothing.
 struct About {
   std::string problem;  ///< billiards
   std::string paper;    ///< "Ann Ames: Title. Venue, 2022. arXiv:2203.10131"
@@ -68,7 +68,7 @@ struct StageRecord {
   Counts counts;
   std::uint64_t buffer_bytes = 0;  ///< peak bytes of the stage's buffers
   std::uint64_t rss_bytes = 0;     ///< peak resident set of its process
-  bool crowded = false;    ///< wall times measure no speed (crowded.h tells)
+  bool crowded = false;    ///< wall times measure no speed (see crowded.h)
   std::string finished;    ///< UTC date and time, ISO 8601
   std::string revision;    ///< git revision it ran from, "+dirty" if so
   std::string trajectory;  ///< hash of all iterates, if traced

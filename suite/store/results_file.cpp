@@ -127,7 +127,7 @@ Json own_part(Json entry) {
   return entry;
 }
 
-/// The run that an entry tells of.
+/// The run that an entry describes.
 std::string run_of(const Json& entry) {
   const Json& own = entry.at("physinv");
   const auto text = [&](const char* key) {

@@ -1,4 +1,4 @@
-/// results.json as it stands in a directory of results.
+/// results.json as it is in a directory of results.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@ namespace physinv {
 
 class Catalog;
 
-/// The version of what has `context` and `benchmarks`; 1 if it tells none.
+/// The version of what has `context` and `benchmarks`; 1 if it has none.
 int results_version(const nlohmann::ordered_json& results);
 
 /// With a checksum in the context.
@@ -25,10 +25,10 @@ nlohmann::ordered_json read_results(const std::filesystem::path& directory);
 nlohmann::ordered_json parse_results(std::string_view bytes,
                                      const std::filesystem::path& path);
 
-/// All cases with their repetitions. results.json, if there is one, is held
-/// against what it is made from: plan, journal, case files and repetitions.
-/// StoreError if it tells of a stage what they do not. It may be older than
-/// they are, as after a kill, and tell of runs that others have replaced.
+/// All cases with their repetitions. results.json, if there is one, is compared
+/// with what it is made from: plan, journal, case files and repetitions.
+/// StoreError if it says of a stage what they do not. It may be older than they
+/// are, as after a kill, and contain runs that others have replaced.
 std::vector<CaseRecord> checked_cases(const Catalog& catalog);
 /// The same of the entries of `results` alone; `own` is what is made now.
 void check_entries(const Catalog& catalog,

@@ -33,7 +33,7 @@ nlohmann::ordered_json error_entry(const std::string& name,
 /// Of the times of an entry: earlier programs tell milliseconds.
 double seconds_per_unit(const nlohmann::ordered_json& entry);
 
-/// As it stands in the file.
+/// As it is in the file.
 std::string results_text(const nlohmann::ordered_json& results);
 
 }  // namespace physinv

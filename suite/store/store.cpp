@@ -308,7 +308,8 @@ void Store::set_plan(const std::vector<CaseInfo>& cases,
 }
 
 void Store::set_plan(json plan) {
-  // Until it is written again, results.json tells of what was asked for before.
+  // Until it is written again, results.json describes what was asked for
+  // before.
   plan.erase("results");
   if (const auto earlier = known_results(catalog_.directory()))
     plan["results"] = checksum_of(*earlier);
@@ -326,7 +327,7 @@ void keep_repetitions(const fs::path& directory,
   Store store(directory, lock);
   if (const auto results = known_results(directory))
     store.set_context(results->at("context"));
-  // Never beside repetitions that it does not tell of.
+  // Never together with repetitions that it does not contain.
   Folder(directory).remove(kResults);
   write_repetitions(directory, repetitions);
   store.finish();

@@ -4,8 +4,8 @@
 ///   plan.json      what was asked for              results.json     derived
 ///   lock           held by the writer     checkpoints/  see stage_state.h
 ///
-/// All of it is reached through the directory's Folder (folder.h). What else
-/// stands there is the user's.
+/// All of it is reached through the directory's Folder (folder.h). What else is
+/// there is the user's.
 ///
 /// A stage's arrays are on disk before its line, so that the process may be
 /// killed at any moment: what `commit` returned for is there, complete, once.
@@ -76,7 +76,7 @@ class Store {
   /// Nothing is done if there is none.
   void drop_state(const std::string& key);
 
-  /// What is asked for, see plan.h, beside what was asked for earlier.
+  /// What is asked for, see plan.h, in addition to what was asked for earlier.
   void set_plan(const std::vector<CaseInfo>& cases,
                 const nlohmann::json& context,
                 std::vector<PlannedCase> campaign = {});
@@ -118,8 +118,8 @@ void keep_repetitions(const std::filesystem::path& directory,
                       const Repetitions& repetitions,
                       const LockOptions& lock = {});
 
-/// A new store beside the files of another, of a name that only the suite
-/// makes; it goes with all that a store holds. What a kill leaves of it goes
+/// A new store in the folder of another, with a name that only the suite makes;
+/// it is removed with all that a store holds. What a kill leaves of it goes
 /// when the other is opened for writing.
 class PassingStore {
  public:
