@@ -80,7 +80,7 @@ std::vector<std::string> places_of(std::string_view text) {
   std::vector<std::string> places;
   std::string kind;
   int last = -1;
-  bool to = false;  // a range goes on: "8 to 11"
+  bool to = false;  // a range continues: "8 to 11"
   for (const std::string& token : tokens_of(text)) {
     if (is_digit(token.front())) {
       if (kind.empty() || token.size() > 4) continue;

@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Claims with all that was measured, the failing ones as they stand.
+/// Claims with all that was measured, the failing ones as they are.
 std::string claims_of(const LatestClaims& all,
                       const std::string& experiment,
                       Origin origin) {

@@ -21,15 +21,15 @@ std::string report_html(const std::vector<Section>& sections,
                         const nlohmann::ordered_json& provenance);
 
 /// The index of the pages of experiments, <folder>/index.html: sections that
-/// stand in front; of each paper a card per experiment with its key figure,
+/// come first; of each paper a card per experiment with its key figure,
 /// <folder>/card.svg, how its methods compare, and the verdicts; below all
-/// cards the statements that do not hold as printed, with what was measured
-/// and why, then numbers that papers print beside the measured ones.
+/// cards the statements that do not hold as printed, with what was measured and
+/// why, then numbers that papers print next to the measured ones.
 std::string index_html(const std::vector<Section>& sections,
                        const Pages& pages,
                        const nlohmann::ordered_json& provenance);
 
-/// A campaign whose pages stand in the folder of its name.
+/// A campaign whose pages are in the folder of its name.
 struct CampaignPages {
   std::string name, command;
   nlohmann::ordered_json provenance;

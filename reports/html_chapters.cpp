@@ -11,7 +11,8 @@
 namespace physinv {
 namespace {
 
-/// Beside the paper's, of an experiment; statements that fail do not count.
+/// Numbers of an experiment next to the paper's; statements that fail do not
+/// count.
 constexpr std::size_t kNumbers = 3;
 
 bool is_open(const ClaimResult& claim) {
@@ -24,8 +25,8 @@ bool needs_words(Verdict verdict) {
          verdict == Verdict::partly_judged;
 }
 
-/// Numbers of a paper beside those measured here; statements that do not hold
-/// have sentences of their own.
+/// Numbers of a paper next to those measured here; statements that do not hold
+/// have their own sentences.
 std::string numbers_html(const std::vector<const Section*>& sections) {
   std::string rows;
   for (const Section* section : sections)
@@ -74,7 +75,7 @@ std::string measured_of(const ClaimResult& claim) {
   return text.empty() ? claim.evidence : text;
 }
 
-/// Joined to what stands before; without the full stop that follows.
+/// Joined to what comes before; without the full stop that follows.
 std::string further(std::string_view words) {
   while (words.ends_with('.')) words.remove_suffix(1);
   return words.empty() ? "" : ". " + html(words);

@@ -27,10 +27,9 @@ std::string caption_html(const std::string& id,
                          std::string_view where,
                          std::string_view title);
 
-/// Our numbers and, where there are some, the paper's side by side; spreads
-/// are columns of their own, so that digits stand below each other. A table
-/// that is wide and flat is turned; columns and rows that were not run are
-/// words below it.
+/// Our numbers and, where there are some, the paper's side by side; spreads are
+/// separate columns, so that digits are below each other. A table that is wide
+/// and flat is turned; columns and rows that were not run are words below it.
 std::string table_html(const Table& table, const std::string& id);
 
 /// "Table 4 · Title".
@@ -45,7 +44,7 @@ std::string verdicts_html(const VerdictCounts& counts);
 /// The same with those that are not judged.
 std::string counts_html(const VerdictCounts& counts);
 
-/// What stands on a page; all of it is HTML.
+/// What is on a page; all of it is HTML.
 struct PageParts {
   std::string title;  ///< plain, of the window
   std::string header, contents, main, footer;
@@ -69,7 +68,7 @@ std::string summary_html(const nlohmann::ordered_json& provenance);
 /// All that is known of a campaign.
 std::string provenance_html(const nlohmann::ordered_json& provenance);
 /// A page of one experiment: claims, tables and figures, with links to their
-/// data, which stand in the page's folder, and to the index above it.
+/// data, which are in the page's folder, and to the index above it.
 std::string section_page_html(const Section& section,
                               const nlohmann::ordered_json& provenance,
                               const Palette& palette,
@@ -82,7 +81,7 @@ std::string card_html(const Section& section,
                       const std::string& folder,
                       const std::optional<std::string>& picture);
 
-/// A paper, or what else stands together.
+/// A paper, or another group.
 struct Part {
   Group group;
   std::vector<const Section*> sections;
@@ -90,11 +89,11 @@ struct Part {
 constexpr const char *kDeviations = "Statements that do not hold as printed",
                      *kMeasured = "Measured and published numbers";
 /// Sections `deviations` and `numbers` of the index: by paper, statements that
-/// do not hold with what was measured and why; numbers that papers print beside
-/// those measured, and how many statements are not judged.
+/// do not hold with what was measured and why; numbers that papers print next
+/// to those measured, and how many statements are not judged.
 std::string chapters_html(const std::vector<Part>& parts);
 
-/// What stands beside a page.
+/// What surrounds the text of a page.
 struct Beside {
   /// Of the data of tables and figures, from the page; nothing: not linked.
   std::optional<std::string> folder = {};
@@ -110,7 +109,7 @@ std::string section_html(const Section& section,
                          const Palette& palette,
                          const Beside& beside);
 
-/// The command that makes a section anew; empty if the profile is not known.
+/// The command that makes a section again; empty if the profile is not known.
 std::string command_of(const Section& section,
                        const nlohmann::ordered_json& provenance);
 

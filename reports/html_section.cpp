@@ -96,7 +96,7 @@ std::string claims_table_html(const std::string& title,
          rows + "</tbody>\n</table>\n</div>\n";
 }
 
-/// Those that are not judged stand behind one line.
+/// Those that are not judged are folded behind one line.
 std::string claims_html(const Section& section,
                         const Anchors& anchors,
                         Origin origin) {

@@ -8,10 +8,10 @@
 
 namespace physinv {
 
-/// Of the sections of this paper's experiments: the tables that stand in two
-/// of them or more under one place ("Table 4"), title and columns, as one,
-/// with the rows of all in the order of the sections. Rows that are not called
-/// like their experiment have its title in front.
+/// Of the sections of this paper's experiments: the tables that two of them or
+/// more have under one place ("Table 4"), title and columns, as one, with the
+/// rows of all in the order of the sections. Rows that are not called like
+/// their experiment have its title in front.
 std::vector<Table> joined_tables(const std::vector<Section>& sections,
                                  const std::string& paper);
 

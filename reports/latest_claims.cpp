@@ -23,8 +23,8 @@ int weight(Verdict verdict) {
   }
 }
 
-/// A verdict before none, and of two that of the more cases: who ran a part
-/// anew does not decide of the whole.
+/// A verdict before none, and of two that of the more cases: a part that was
+/// run again does not decide the whole.
 auto rank_of(const LatestClaim& c) {
   return std::tuple(weight(c.claim.verdict), c.cases);
 }

@@ -35,7 +35,7 @@ std::vector<NamedDigest> newest_first(std::vector<NamedDigest> campaigns);
 /// reported.
 Papers latest_claims(const std::vector<NamedDigest>& campaigns);
 
-/// A claim that comes to another verdict; not judged where it is not there.
+/// A claim with another verdict; not judged where it is not there.
 struct NewVerdict {
   ClaimKey key;
   Verdict then, now;

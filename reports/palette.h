@@ -47,7 +47,7 @@ class Palette {
   void set(const Series& entry, Ink ink);
 
  private:
-  /// What tells entries of a legend apart.
+  /// What distinguishes entries of a legend.
   using Entry = std::tuple<std::string, std::string, bool>;
   static Entry entry_of(const Series& series);
   Ink next_free();

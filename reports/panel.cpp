@@ -14,7 +14,7 @@ namespace {
 constexpr double kTickWidth = 6.3;  // of a character of the tick font
 constexpr double kNameHeight = 15;  // of a row that has a name
 
-// Names of rows or columns stand at the middle of their cells.
+// Names of rows or columns are at the middle of their cells.
 std::vector<Tick> named(const std::vector<std::string>& names) {
   std::vector<Tick> ticks;
   for (std::size_t i = 0; i < names.size(); ++i)
@@ -191,8 +191,8 @@ void PanelPlot::draw(Svg& svg, const Rect& cell) const {
   svg.close();
 }
 
-// Names of columns that are wider than these stand upright: so high is the
-// longest, 0 if none is.
+// The height of the longest name of a column; names that are wider than their
+// columns are upright. 0 if none is.
 double PanelPlot::turned_names(double width) const {
   if (!panel_.field || panel_.field->x_names.empty()) return 0;
   std::size_t longest = 0;

@@ -19,8 +19,8 @@ struct Rect {
 
 /// Does the panel draw a point of this series?
 bool shows(const Panel& panel, const Series& series);
-/// Is there anything to draw? Lines of reference alone, dashed at one height,
-/// beside series that have no point, are nothing.
+/// Is there anything to draw? Dashed lines of reference at one height do not
+/// count where no series has a point.
 bool has_points(const Panel& panel);
 /// The one value at which all of several points are; bands are none.
 std::optional<double> constant_of(const Panel& panel);

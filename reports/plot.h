@@ -19,7 +19,7 @@ std::string render_svg(const Figure& figure, const Palette& report = {});
 
 /// The panels in a row under their legend, for a narrow place: kCardWidth wide
 /// and kCardHeight high, or higher if the names of its rows need it. Has no
-/// title, which stands beside it as text.
+/// title, which the page shows as text.
 std::string render_card(const Figure& figure, const Palette& report = {});
 inline constexpr int kCardWidth = 360, kCardHeight = 270;
 

@@ -1,4 +1,4 @@
-/// What papers print of their curves: levels, points and spans, drawn beside
+/// What papers print of their curves: levels, points and spans, drawn next to
 /// ours. From "curves" of reports/published/<paper>.json:
 ///   experiment, figure  whose figure it is
 ///   panels              titles, or labels of x where there are none; absent:

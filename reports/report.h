@@ -37,7 +37,7 @@ ClaimResult claim_from(const nlohmann::ordered_json& claim);
 /// one of its own, which needs no escapes.
 std::string folder_of(std::string_view experiment);
 
-/// Experiments that stand together: those whose name begins with the key.
+/// A group of experiments: those whose name begins with the key.
 struct Group {
   std::string key;    ///< jpo
   std::string title;  ///< of the paper
@@ -54,7 +54,7 @@ struct Picture {
 struct Pages {
   bool one_file = true;       ///< index.html has everything
   std::vector<Group> groups;  ///< of the index, in order
-  std::size_t front = 0;      ///< so many sections stand on the index, whole
+  std::size_t front = 0;      ///< so many sections are on the index, whole
   /// By experiment, below its other figures.
   std::map<std::string, std::vector<Picture>> pictures = {};
 };

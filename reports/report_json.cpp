@@ -113,7 +113,7 @@ std::vector<ConditionResult> conditions_from(const Json& list) {
                                 : std::nullopt,
                    .missing = c.at("missing"),
                    .shown = c.value("shown", "")});
-    // One that is not finite is null, and was decided about all the same.
+    // One that is not finite is null, and was still decided.
     if (!out.back().value && out.back().holds) out.back().value = INFINITY;
   }
   return out;

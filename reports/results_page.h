@@ -27,8 +27,8 @@ std::string results_markdown(const std::vector<NamedDigest>& campaigns,
                              const std::vector<Publication>& publications = {},
                              const ResultsLinks& links = {});
 
-/// Markdown, beside the experiments' pages: how many regression checks hold,
-/// and those that do not. std::runtime_error as above.
+/// Markdown, in the folder of the experiments' pages: how many regression
+/// checks hold, and those that do not. std::runtime_error as above.
 inline constexpr const char* kChecksPage = "regression-checks.md";
 std::string checks_markdown(const std::vector<NamedDigest>& campaigns,
                             const ResultsLinks& links = {});

@@ -1,4 +1,4 @@
-/// The numbers of a section that stand beside the paper's.
+/// The numbers of a section that are shown next to the paper's.
 #pragma once
 
 #include <cstddef>
@@ -21,13 +21,13 @@ struct Statement {
 /// of those with bounds that was measured; null if there is none.
 const ConditionResult* telling(const ClaimResult& claim);
 
-/// Counts as they are, all else with three digits.
+/// Counts as they are, other numbers with three digits.
 std::string value_text(double value);
 
 /// At most so many, in this order: the paper's statements that are decided,
 /// those that do not hold first; the suite's ranges that fail; cells of tables
-/// beside which the paper printed a number, of each table in turn. Tables of
-/// times are left out: the paper's machine was another one.
+/// for which the paper printed a number, of each table in turn. Tables of times
+/// are left out: the paper's machine was another one.
 std::vector<Statement> statements_of(const Section& section,
                                      std::size_t most = SIZE_MAX);
 

@@ -28,7 +28,7 @@ class Svg {
       std::string_view description,
       std::string_view style);
 
-  /// One that stands in an HTML page, as wide as its place, and takes its
+  /// One that is part of an HTML page, as wide as its place, and takes its
   /// style from there.
   static Svg inlined(double width,
                      double height,

@@ -92,7 +92,7 @@ std::string aligned(const std::string& word, std::size_t width, bool label) {
   return label ? pad_right(word, width) : pad_left(word, width);
 }
 
-// A column and the paper's beside it stay together.
+// A column and the paper's next to it stay together.
 std::vector<std::size_t> block_starts(const Words& words,
                                       const std::vector<std::size_t>& widths,
                                       std::size_t width) {

@@ -19,7 +19,7 @@ nlohmann::ordered_json to_json(const Table& table);
 
 /// Tidy: the keys of a row in columns of their own (`Table::keys`, else the
 /// corner; `Table::across`), one value a cell, the unit in the head, numbers
-/// with every digit, empty where there is none. A column has others beside it
+/// with every digit, empty where there is none. A column has others next to it
 /// where any row has that: "spread", "paper", "paper spread", "of" and, for
 /// words in the place of a number, "note".
 std::string to_csv(const Table& table);
@@ -28,12 +28,12 @@ std::string to_csv(const Table& table);
 /// band; of a field each cell, its value behind them.
 std::string to_csv(const Figure& figure);
 
-/// Aligned pipe table with title and note: ours ± spread, and a column
-/// "paper" beside it where the paper printed any.
+/// Aligned pipe table with title and note: ours ± spread, and a column "paper"
+/// next to it where the paper printed any.
 std::string to_markdown(const Table& table);
 
-/// The same for a terminal. Columns that do not fit into `width` go on below,
-/// with the labels repeated.
+/// The same for a terminal. Columns that do not fit into `width` continue
+/// below, with the labels repeated.
 std::string render_text(const Table& table, std::size_t width);
 
 }  // namespace physinv

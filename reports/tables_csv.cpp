@@ -29,7 +29,7 @@ Cells keys_of(const Table& table, const TableRow& row) {
              : Cells{row.label};
 }
 
-/// As it stands: columns are quantities.
+/// As it is: columns are quantities.
 Tidy plain(const Table& table) {
   Tidy out{.keys = table.keys, .quantities = table.columns};
   if (out.keys.empty())

@@ -27,8 +27,8 @@ constexpr std::array kShapes{
     "circle", "square", "triangle-up", "diamond", "triangle-down", "cross"};
 static_assert(kShapes.size() == static_cast<std::size_t>(Marker::cross) + 1);
 
-/// A style may have the number of a hue as its marker; it stands for the next
-/// round of them.
+/// A style may have the number of a hue as its marker; it means the next round
+/// of them.
 const char* shape_of(Marker marker) {
   return kShapes[static_cast<std::size_t>(marker) % kShapes.size()];
 }

@@ -1,5 +1,5 @@
 /// Figures as Vega-Lite, version 5: for notebooks, editors and web pages that
-/// draw them anew.
+/// draw them again.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

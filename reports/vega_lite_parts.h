@@ -14,7 +14,7 @@ nlohmann::ordered_json vega_axis(const char* field,
                                  bool log);
 
 /// A layer of rectangles. Values that cannot be shown are left out; places that
-/// a logarithmic axis cannot show, such as 0, are names beside each other.
+/// a logarithmic axis cannot show, such as 0, are names next to each other.
 void add_vega_field(nlohmann::ordered_json& layers,
                     const Field2D& field,
                     const Panel& panel);

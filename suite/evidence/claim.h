@@ -11,8 +11,8 @@
 ///   .cause = contradiction("Table 3 falls with n, App. D says it grows",
 ///                          {below("printed, n = 128 less n = 4", ..., 0)})
 ///
-/// The verdict is computed all the same: a cause tells what a failed condition
-/// counts as, and is stale once the claim holds.
+/// The verdict is still computed: a cause says what a failed condition counts
+/// as, and is stale once the claim holds.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +26,8 @@
 namespace physinv {
 
 struct Cause {
-  /// What a claim that fails comes to; of a claim that is not judged or only
-  /// reported, that.
+  /// The verdict if the claim fails; also that of a claim that is not judged or
+  /// only reported.
   Verdict as = Verdict::not_reproduced;
   std::string why = {};  ///< numbers in braces as they are written
   /// What has to hold for it, so far as it was run: the same direction, the
@@ -94,8 +94,8 @@ struct Claim {
 /// `profiles` are the experiment's in ascending order. A claim is judged from
 /// the profile it names or a later one; below, and where runs are missing, it
 /// is not judged, with what is missing. One condition that fails decides, even
-/// if others are missing; what that counts as, its cause tells. If none fails
-/// and some are missing, the claim is judged in part.
+/// if others are missing; its cause says what that counts as. If none fails and
+/// some are missing, the claim is judged in part.
 std::vector<ClaimResult> judge(const std::vector<Claim>& claims,
                                const Evidence& evidence,
                                const std::vector<std::string>& profiles);

@@ -298,7 +298,7 @@ class Reader {
     return any(claim_->conditions) || (of_cause && any(claim_->cause.shown_by));
   }
 
-  /// Do the words stand in the claim's sentence, note or labels?
+  /// Are the words in the claim's sentence, note or labels?
   bool names(const std::string& words) const {
     const auto in = [&](const std::string& text) {
       return text.find(words) != std::string::npos;

@@ -25,15 +25,15 @@
 /// has. The heading of a claim has its id, its place in the paper (without one,
 /// the claim is a range of the suite), the lowest profile that decides it, and
 /// "no gate" where it gates nothing. A line of a list is a condition; without a
-/// relation its number is reported. Lines go on where the next ones are
+/// relation its number is reported. A line continues where the next ones are
 /// indented. The label finds numbers that were kept; a text that is to be shown
-/// instead stands before it: "- text (kept as label): `...`".
+/// instead comes before it: "- text (kept as label): `...`".
 ///
 /// Relations: > >= < <=, `in a .. b`, `= a`, `= a +- b`, `near a`, `about a`,
 /// `as printed("name", seeds)`, `as stated(a, seeds)`, each perhaps followed by
 /// `of stages`; condition.h says what they are. Causes: Fails, Stronger,
 /// Weaker, Depends, Contradiction, Not run, Reported (claim.h); numbers in
-/// their text stand in braces (cause_numbers.h).
+/// their text are in braces (cause_numbers.h).
 #pragma once
 
 #include <stdexcept>

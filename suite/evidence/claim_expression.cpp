@@ -202,7 +202,7 @@ ClaimValue Expression::call(const Token& t) {
                                     fmt::join(given, ", "))};
 }
 
-/// What the function throws stands where it was called.
+/// Errors of the function are reported at the place of the call.
 std::optional<ClaimValue> Expression::result_of_call(
     const ClaimNames::Function& f,
     const ClaimList& arguments,

@@ -37,7 +37,7 @@ class Expression {
         calls_left_(calls_left),
         depth_(depth) {}
 
-  /// Of what stands next, up to a token that no expression has there.
+  /// Of what comes next, up to a token that no expression has there.
   ClaimValue sum();
   template <class T>
   T sum_as() {

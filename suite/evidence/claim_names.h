@@ -86,7 +86,7 @@ class ClaimNames {
     std::function<std::optional<ClaimValue>(const Call&)> call;
   };
 
-  /// A function beside those of its name, with other parameters.
+  /// Another function of this name, with other parameters.
   template <class F>
   void add(const std::string& name, F function) {
     add_function(name, std::function{std::move(function)});

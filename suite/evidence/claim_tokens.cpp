@@ -49,7 +49,7 @@ std::pair<Token::Kind, std::size_t> token_at(const PlacedText& code,
     const char* last = s.data() + s.size();
     const auto read = std::from_chars(s.data() + k, last, value);
     auto end = static_cast<std::size_t>(read.ptr - s.data());
-    // "0 .. 5" may stand without spaces.
+    // "0 .. 5" may be written without spaces.
     if (const auto range = s.find("..", k); range < end) end = range;
     return {Token::Kind::number, end};
   }

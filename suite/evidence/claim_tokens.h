@@ -1,4 +1,4 @@
-/// The text of expressions of claims.md, in tokens that know where they stand.
+/// The text of expressions of claims.md, in tokens that know their places.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace physinv {
 
-/// Text of a document that remembers where each of its characters stands.
+/// Text of a document that remembers the place of each character.
 struct PlacedText {
   struct Place {
     int line = 0, column = 0;

@@ -42,7 +42,7 @@ ConditionResult Condition::judge(const Evidence& evidence) const {
 
 namespace {
 
-/// A bound with runs behind it says its number beside its relation.
+/// A bound with runs behind it shows its number next to its relation.
 Condition compare(std::string label,
                   Quantity q,
                   const char* relation,

@@ -21,7 +21,7 @@ using Kept = std::vector<ConditionResult>;
 struct Condition {
   std::string label;   ///< by which its number is kept
   std::string bounds;  ///< in words: "in 55 .. 95"; none: it decides nothing
-  /// The number, and what it is held against: what registration checks.
+  /// The number and its bound: what registration checks.
   std::vector<Quantity> quantities;
   /// Holds a number, measured or kept, against its bound.
   std::function<void(const Evidence&, ConditionResult& number)> decide = {};
@@ -48,7 +48,7 @@ inline constexpr const char* kNotKept = "not kept; needs a run";
 /// Judged by the stages that are left, if the condition is of them; else by the
 /// number that an earlier judgement kept under this label and relation, or only
 /// reported under it, or by the parts of the number. A bound that was measured
-/// is not kept: what was decided by it stands. Missing if there is nothing.
+/// is not kept: what was decided by it remains. Missing if there is nothing.
 ConditionResult judge_kept(const Condition& condition,
                            const Kept& kept,
                            const Remains& remains);
@@ -78,7 +78,7 @@ Condition reported(std::string label, Quantity q);
 /// Holds if one of them does.
 Condition either(Condition a, Condition b);
 /// Of ends, iterations, times, mean or largest losses of stages alone, which
-/// results.json keeps: decided anew for every campaign.
+/// results.json keeps: decided again for every campaign.
 Condition of_stages(Condition c);
 /// Under another text; numbers are kept by the label as before.
 Condition shown_as(Condition c, std::string text);
@@ -100,7 +100,7 @@ Condition as_stated(std::string label,
                     double stated,
                     Index seeds);
 
-/// One of several means, beside its name among the printed ones.
+/// One of several means, next to its name among the printed ones.
 struct PrintedMean {
   std::string label;
   Quantity quantity;

@@ -1,5 +1,5 @@
 /// Methods that an experiment's author does not know: those in Python, which
-/// their users add. Reports draw them beside the experiment's own.
+/// their users add. Reports draw them next to the experiment's own.
 #pragma once
 
 #include <string>

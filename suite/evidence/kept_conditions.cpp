@@ -9,7 +9,7 @@ namespace physinv {
 namespace {
 
 /// The word before the numbers: ">", "in", "printed", "about"; whatever a
-/// number was held against.
+/// number was compared with.
 std::string_view relation_of(std::string_view bounds) {
   const auto word = bounds.substr(0, bounds.find(' '));
   return word == "as" || word == "about" ? "printed" : word;
@@ -17,7 +17,7 @@ std::string_view relation_of(std::string_view bounds) {
 
 bool has_runs(const Quantity& q) { return !q.runs().empty(); }
 
-/// Was the number held against one that was measured, and is not kept?
+/// Was the number compared with one that was measured and is not kept?
 bool has_measured_bound(const Condition& c) {
   return std::any_of(c.quantities.begin() + 1, c.quantities.end(), has_runs);
 }

@@ -10,7 +10,8 @@
 
 namespace physinv {
 
-/// As if `experiment` asked; runs beside others are looked for there, too.
+/// As if `experiment` asked; runs that others are compared with are looked for
+/// there, too.
 inline Quantity of_experiment(const std::string& experiment,
                               const Quantity& q) {
   std::vector<Select> runs;

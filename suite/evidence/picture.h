@@ -62,7 +62,7 @@ struct PictureOptions {
   std::function<Panel(const FoundBy&, const Pictured&)> draw;
 };
 
-/// A panel for each, fields with one scale. The note tells which problem it is.
+/// A panel for each, fields with one scale. The note says which problem it is.
 /// Without a problem it has no panel, and its note says that unknowns are not
 /// stored.
 Figure picture(const PictureOptions& options,

@@ -140,7 +140,7 @@ Quantity spread_ratio(const std::vector<Quantity>& of);
 /// Names the other runs that the values read, for registration to look up.
 Quantity depends_on(const Quantity& a, const std::vector<Select>& others);
 
-/// Missing unless so many runs (or seeds) stand behind it.
+/// Missing unless it is of so many runs (or seeds).
 Quantity from_at_least(Index runs, const Quantity& a);
 
 /// A value of the paper, with its printed spread: of the experiment that asks,

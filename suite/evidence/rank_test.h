@@ -18,8 +18,8 @@ double decades_above(double a, double b);
 /// Wilcoxon's signed rank test (Biometrics Bulletin 1, 1945) of paired
 /// differences, two-sided. Ties (differences of 0) are dropped, equal sizes
 /// share their ranks. Of at most 50 differences all signs are counted, else it
-/// goes by the normal distribution with the variance of shared ranks; the
-/// numbers of scipy.stats.wilcoxon, which shares no ranks where it counts.
+/// uses the normal distribution with the variance of shared ranks; the numbers
+/// of scipy.stats.wilcoxon, which shares no ranks where it counts.
 struct SignedRank {
   std::size_t pairs = 0, below = 0, ties = 0;  ///< below: negative
   double p = 1;                                ///< 1 if there is no difference

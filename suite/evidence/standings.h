@@ -1,5 +1,5 @@
-/// How the methods of an experiment stand to each other: ranks and paired tests
-/// of final losses, expected running times, scores of performance profiles.
+/// How the methods of an experiment compare: ranks and paired tests of final
+/// losses, expected running times, scores of performance profiles.
 #pragma once
 
 #include <map>

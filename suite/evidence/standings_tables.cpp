@@ -13,7 +13,7 @@ namespace {
 
 /// Tolerances of running times; scores are of the first.
 constexpr double kTolerances[] = {1e-2, 1e-5};
-/// Of more pairs, those of the methods that stand first.
+/// Of more pairs, those of the first methods.
 constexpr std::size_t kMostPairs = 28;
 constexpr const char* kNotKnown = "not known";
 

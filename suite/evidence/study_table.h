@@ -1,5 +1,5 @@
-/// Studies: a number of each setting, beside what the paper prints or states of
-/// it. All of them are conditions of a claim and cells of a table.
+/// Studies: a number of each setting, next to what the paper prints or states
+/// of it. All of them are conditions of a claim and cells of a table.
 #pragma once
 
 #include <fmt/format.h>
@@ -20,10 +20,10 @@ struct StudyColumn {
   using Of = std::function<Quantity(const Setting&)>;
   using Asks = std::function<Condition(std::string, Quantity, const Setting&)>;
 
-  /// Beside what the text states of it, if it does.
+  /// Next to what the text states of it, if it does.
   StudyColumn(std::string head, Of number, Asks bound = nullptr)
       : title(std::move(head)), of(std::move(number)), asks(std::move(bound)) {}
-  /// Beside a number of the papers' files.
+  /// Next to a number of the papers' files.
   StudyColumn(std::string head, Of number, std::string name)
       : title(std::move(head)),
         of(std::move(number)),

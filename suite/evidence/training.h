@@ -50,7 +50,7 @@ struct RowOfCurve {
   ArrayKey array = kMeanLoss;
   Index row = 0;
 };
-/// A row of what the experiment records beside the loss.
+/// A row of what the experiment records in addition to the loss.
 constexpr RowOfCurve metric(Index row) { return {"metrics", row}; }
 /// Updates of the first measured point below a level; infinite without one.
 RunValue first_below(double level, RowOfCurve row = {});

@@ -153,7 +153,7 @@ Figure update_times(const Evidence& e,
                     const std::vector<MethodLine>& lines,
                     std::string where);
 
-/// A method beside a row of the paper's tables of memory and durations.
+/// A method next to a row of the paper's tables of memory and durations.
 struct CostLine {
   std::string method, label;
   std::string published;  ///< "table3/hig/b=128"

@@ -2,10 +2,10 @@
 /// one n and precision, and where its curve is cut off is its budget.
 ///
 /// Losses are means over the examples, divided by the lowest at which any
-/// method starts on the same problems: so different n can stand side by side.
-/// Seconds are the batch's over n; where a method is judged by its network on a
-/// test set, those of the training. Medians over the seeds that all settings
-/// of one n have in common.
+/// method starts on the same problems: so different n can be shown side by
+/// side. Seconds are the batch's over n; where a method is judged by its
+/// network on a test set, those of the training. Medians over the seeds that
+/// all settings of one n have in common.
 ///
 /// A run that failed counts: its loss is infinite from its failure on, after
 /// all that it spent; so is a loss that is not finite.
@@ -43,8 +43,8 @@ struct SettingHistory {
 };
 
 /// Settings whose chains are finished or failed. Losses that are not positive
-/// have no ratio, and a failure after a time that nobody knows has no place:
-/// such settings have no points.
+/// have no ratio, and a failure after an unknown time has no place: such
+/// settings have no points.
 std::vector<SettingHistory> setting_histories(const Results& results,
                                               const std::string& experiment);
 

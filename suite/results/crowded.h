@@ -1,5 +1,5 @@
-/// Whether a stage had its cores to itself, and which of its clocks tells what
-/// solving took.
+/// Whether a stage had its cores to itself, and which of its clocks says how
+/// long solving took.
 #pragma once
 
 #include <algorithm>

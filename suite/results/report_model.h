@@ -12,12 +12,13 @@
 
 namespace physinv {
 
-/// A measured number beside a published one. Absent values are absent, never 0.
+/// A measured number next to a published one. Absent values are absent, never
+/// 0.
 struct Cell {
   std::optional<double> ours, spread;  ///< mean, std over seeds
   std::optional<double> paper, paper_spread;
   std::string text;     ///< shown instead of numbers if not empty ("not run")
-  std::string of = {};  ///< what the number is of, beside it in tidy files
+  std::string of = {};  ///< what the number is of, next to it in tidy files
 };
 
 struct TableRow {
@@ -87,7 +88,7 @@ struct Series {
 /// values[j * x.size() + i].
 struct Field2D {
   std::vector<double> x, y, values;
-  /// What stands at the axes instead of numbers, if not empty.
+  /// Labels of the axes instead of numbers, if not empty.
   std::vector<std::string> x_names = {}, y_names = {};
   bool log_scale = false;
   std::string label;
@@ -124,7 +125,7 @@ struct Figure {
   std::string note;
   /// So many panels after each other are one moment of a film; 0: no film.
   int moment = 0;
-  /// Shows what the problem is about; stands before the paper's figures. One
+  /// Shows what the problem is about; is shown before the paper's figures. One
   /// without panels says in its note why there is nothing to draw.
   bool picture = false;
 };

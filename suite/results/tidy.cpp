@@ -65,7 +65,8 @@ Real evaluations(const TidyRow& r) {
   return counted(r, r.record->example_evaluations);
 }
 
-/// What a method from outside says of its work, beside what was counted.
+/// What a method from outside says of its work, in addition to what was
+/// counted.
 Real beside(const TidyRow& r, std::string_view array) {
   if (!r.has_numbers()) return {};
   const auto at = r.record->arrays.find(ArrayKey::own(array));

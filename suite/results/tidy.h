@@ -2,8 +2,8 @@
 /// asked for, one value a cell.
 ///
 /// Stages that failed, were skipped, diverged or were not run have a row for
-/// each example, too, so that rates are of all: their end stands as `status`,
-/// and there is no loss, no work and no time.
+/// each example, too, so that rates are of all: their end is in `status`, and
+/// there is no loss, no work and no time.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct MissingWork;
 /// Of one example. What it points to belongs to the campaign.
 struct TidyRow {
   std::string_view case_name, stage;
-  const CaseInfo* info = nullptr;       ///< null: the plan tells the name alone
+  const CaseInfo* info = nullptr;       ///< null: the plan has only the name
   const StageRecord* record = nullptr;  ///< null: not run
   std::optional<Index> example;
 
@@ -35,7 +35,7 @@ struct TidyRow {
   bool has_numbers() const;
 };
 
-/// A name, with the unit where there is one, and what stands below it.
+/// A name, with the unit where there is one, and the values below it.
 struct TidyColumn {
   using Text = std::string (*)(const TidyRow&);
   using Whole = std::optional<std::int64_t> (*)(const TidyRow&);

@@ -44,7 +44,7 @@ std::string_view mark_of(Verdict verdict);
 /// for regression checks; nothing if they are no verdict.
 std::optional<Verdict> verdict_of(std::string_view words);
 
-/// A condition fails, and the cause tells what that is.
+/// A condition fails, and the cause says what that is.
 bool is_explained(Verdict verdict);
 
 /// In a cause, instead of a number that was not measured.
