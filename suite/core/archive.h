@@ -3,7 +3,7 @@
 ///
 ///   void serialize(Archive& archive) { archive(m_, v_, steps_); }
 ///
-/// Numbers stand as they lie in memory: for the build that wrote them. What is
+/// Numbers are stored as in memory: for the build that wrote them. What is
 /// given back may be anything: matrices that have rows, or numbers, keep their
 /// shape; whatever else must fit, its part checks.
 #pragma once

@@ -1,7 +1,7 @@
-/// What stages find besides estimates, losses and counts: every array that the
-/// suite leaves, by name. Case files, the Python package and docs/data.md have
-/// axes and meaning from here; `ArrayKey` (arrays.h) refuses other names.
-/// It decides no number, so that its edits make no stage stale.
+/// What stages find in addition to estimates, losses and counts: every array
+/// that the suite leaves, by name. Case files, the Python package and
+/// docs/data.md have axes and meaning from here; `ArrayKey` (arrays.h) refuses
+/// other names. It decides no number, so that its edits make no stage stale.
 #pragma once
 
 #include <string_view>
@@ -14,7 +14,7 @@ struct ArrayInfo {
   std::string_view axes;
   std::string_view unit;  ///< "1" for none; empty: the unknowns' or the clock's
   std::string_view meaning;
-  /// Of a name with several meanings: this one if that array stands beside it.
+  /// Of a name with several meanings: this one if that array is there, too.
   std::string_view beside = {};
 };
 
@@ -141,7 +141,7 @@ constexpr const ArrayInfo* find_array(std::string_view name) {
   return nullptr;
 }
 
-/// The line that fits what stands beside it, and a list or a matrix.
+/// The line that fits the other arrays, and a list or a matrix.
 template <class StandsBeside>
 constexpr const ArrayInfo* find_array(std::string_view name,
                                       bool list,

@@ -1,4 +1,4 @@
-/// Arrays by name, what a stage leaves besides estimates and losses.
+/// Arrays by name, what a stage leaves in addition to estimates and losses.
 ///
 ///   out.arrays["mean_loss"] = loss;                    // array_table.h has it
 ///   out.arrays[ArrayKey::own("my_angles")] = angles;  // a stage of yours

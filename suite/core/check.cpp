@@ -5,8 +5,8 @@
 namespace physinv {
 namespace {
 
-/// A file of the suite by its path from the root of the sources, wherever they
-/// were built.
+/// The path of a source file from the root of the sources, wherever they were
+/// built.
 std::string_view from_root(std::string_view file) {
   constexpr std::string_view kHere = __FILE__, kOwn = "suite/core/check.cpp";
   static_assert(kHere.ends_with(kOwn));

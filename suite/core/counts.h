@@ -34,7 +34,7 @@ enum class Counter : std::uint8_t {
 inline constexpr std::size_t kCounters =
     static_cast<std::size_t>(Counter::kCount);
 
-/// Names as they stand in the record.
+/// Names as in the record.
 inline constexpr std::array<std::string_view, kCounters> kCounterNames = {
     "forward",
     "vjp",
@@ -82,7 +82,7 @@ class Counts {
   std::uint64_t operator[](Counter c) const {
     return values_[static_cast<std::size_t>(c)];
   }
-  /// A record of before there was this counter tells nothing of it.
+  /// A record that is older than this counter does not have it.
   void forget(Counter c) { forgotten_ |= bit(c); }
   bool knows(Counter c) const { return (forgotten_ & bit(c)) == 0; }
 

@@ -10,7 +10,7 @@ namespace physinv {
 /// Of this thread, and of those that it starts from then on.
 inline void set_default_float_environment() { std::fesetenv(FE_DFL_ENV); }
 
-/// The same for as long as it stands; then what was there before.
+/// The same during its lifetime; then what was there before.
 class DefaultFloatEnvironment {
  public:
   DefaultFloatEnvironment() {

@@ -2,11 +2,11 @@
 /// side by side: for signals that are too few for the lanes. Lane 4 s + l of a
 /// pack belongs to signal s.
 ///
-/// The complex signal z_j = u_2j + i u_2j+1 stands in lanes j mod 4 of complex
-/// pack j / 4, so that all passes but the one over neighbours go lane by lane;
-/// for that one, four packs are transposed. Position p = 16 a + 4 c + b of
-/// LanesFft is then lane c of complex pack 4 a + b. Nyquist's mode is lane 0 of
-/// the last.
+/// The complex signal z_j = u_2j + i u_2j+1 is in lanes j mod 4 of complex pack
+/// j / 4, so that all passes but the one over neighbours run lane by lane; for
+/// that one, four packs are transposed. Position p = 16 a + 4 c + b of LanesFft
+/// is then lane c of complex pack 4 a + b. Nyquist's mode is lane 0 of the
+/// last.
 #pragma once
 
 #include <utility>
@@ -171,8 +171,8 @@ inline void FoursFft<T>::run(const Pass& pass,
   }
 }
 
-/// There, neighbours in four packs come to stand in one lane of each; back,
-/// the reverse.
+/// There, neighbours in four packs are moved to one lane of each; back, the
+/// reverse.
 template <class T>
 template <bool kThere, class P>
 inline void FoursFft<T>::run_neighbours(Index packs, const P* in, P* out) {

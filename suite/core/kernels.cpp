@@ -1,5 +1,5 @@
-// Transforms of real signals: the suite's, a signal per lane, beside FFTW's of
-// as many signals. Arguments: points.
+// Transforms of real signals: the suite's, a signal per lane, and FFTW's of as
+// many signals. Arguments: points.
 #include "suite/core/kernels.h"
 
 #include <string>

@@ -4,9 +4,9 @@
 ///
 /// Real signals of n = 2 M points are complex ones of M, z_j = u_2j + i u_2j+1
 /// (radix 4, decimated in frequency on the way there and in time on the way
-/// back, in place), taken apart by a last step. What a mode is multiplied by
-/// does not care where it stands, so spectra stay in the order that the passes
-/// leave: `mode(p)` says what stands at position p.
+/// back, in place), taken apart by a last step. The factors of modes do not
+/// depend on their order, so spectra stay in the order that the passes leave:
+/// `mode(p)` is the mode at position p.
 #pragma once
 
 #include <vector>
@@ -36,8 +36,8 @@ class LanesFft {
   Index mode(Index p) const { return p == half_ ? half_ : mode_[p]; }
 
   /// Where point r of a signal, and number i = 2 p or 2 p + 1 of a spectrum
-  /// (real and imaginary part at position p) stand: lane at % kSide of pack
-  /// at / kSide.
+  /// (real and imaginary part at position p) are: lane at % kSide of pack at /
+  /// kSide.
   static Index point(Index r) { return r; }
   Index place(Index i) const { return i; }
   /// What pack i of a field or spectrum is multiplied by, of numbers in the
@@ -154,7 +154,7 @@ class LanesFft {
   bool pairs_last_;           ///< blocks of two come last
   std::vector<Index> mode_;
   std::vector<Pair> split_;
-  Index middle_;  ///< where mode M / 2 stands
+  Index middle_;  ///< where mode M / 2 is
 };
 
 extern template LanesFft<float>::LanesFft(Index);

@@ -77,7 +77,7 @@ inline double corrected_hypot(double x, double y) {
 }
 
 /// sqrt(x^2 + y^2) without overflow or underflow on the way, error below 1 ulp;
-/// infinity if one of them is infinite, even beside NaN.
+/// infinity if one of them is infinite, even if the other is NaN.
 inline double hypot(double x, double y) {
   if (!std::isfinite(x) || !std::isfinite(y)) {
     if (std::isinf(x) || std::isinf(y))

@@ -1,4 +1,4 @@
-/// The middle of a list, by the one rule that everything here goes by.
+/// The middle of a list, by the one rule that everything here uses.
 #pragma once
 
 #include <algorithm>

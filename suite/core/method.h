@@ -41,8 +41,8 @@ constexpr bool contains(Networks all, Networks part) {
   return (static_cast<int>(all) & static_cast<int>(part)) != 0;
 }
 
-/// Sources that a stage's numbers come from, beside its problem and networks:
-/// editing one of them, or what they include, makes the stage stale.
+/// Sources that a stage's numbers come from, in addition to its problem and
+/// networks: editing one of them, or what they include, makes the stage stale.
 struct Sources {
   /// Relative to the project's root, or as the compiler names them.
   std::vector<std::string> roots;

@@ -40,7 +40,7 @@ constexpr std::string_view to_string(Precision p) {
   return p == Precision::f32 ? "f32" : "f64";
 }
 
-/// What stands in a list: words, and how many members they tell.
+/// The contents of a list: words, and how many members they describe.
 template <std::size_t N>
 struct Listed {
   static constexpr std::size_t kMembers = N;
@@ -148,8 +148,8 @@ Listed<N> only_if(bool decides, Listed<N> listed) {
   return listed;
 }
 
-/// Members that stand elsewhere in the key, as a stage's name and iterations,
-/// or that others name, as functions.
+/// Members that are elsewhere in the key, as a stage's name and iterations, or
+/// that others name, as functions.
 template <class... T>
 Listed<sizeof...(T)> implied(const T&...) {
   return {};

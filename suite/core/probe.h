@@ -1,6 +1,6 @@
-/// The watch over a running stage: counts iterations, keeps the clock and
-/// measures the curve while the clock stands still. What that takes, and what
-/// comes after the end, is measuring.
+/// Watches a running stage: counts iterations, keeps the clock and measures the
+/// curve while the clock is stopped. What that takes, and what comes after the
+/// end, is measuring.
 ///
 ///   while (probe.proceed([&](BatchOut<double> x) { predict(x); })) step();
 #pragma once
@@ -62,8 +62,8 @@ class Probe {
   void begin();
 
   /// True while iterations are left. When a point of the curve is due, stops
-  /// the clock, asks `estimate` to fill x, measures its true loss and tells
-  /// `measured` x and the observations y(x).
+  /// the clock, asks `estimate` to fill x, measures its true loss and passes x
+  /// and the observations y(x) to `measured`.
   template <class F, class G>
   bool proceed(F&& estimate, G&& measured) {
     if (!begun_) begin();
@@ -97,8 +97,8 @@ class Probe {
   bool stopped() const { return stopped_; }
   void end();
 
-  /// Work beside solving: while it stands, another clock runs for the solving
-  /// clock, or none. Before the beginning it is part of set-up.
+  /// Work that is not solving: during its lifetime another clock runs in place
+  /// of the solving clock, or none. Before the beginning it is part of set-up.
   class Aside {
    public:
     Aside(Stopwatch& solve, Stopwatch* other)

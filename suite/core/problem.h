@@ -40,12 +40,12 @@ struct Directions {
 /// One sample while it is drawn, in double: zeros to be written.
 struct SampleOut {
   Index index;    ///< in its set
-  Rng rng;        ///< its own, for streams besides the first
+  Rng rng;        ///< its own, for streams after the first
   bool labelled;  ///< a pair (x, F(x)), not an inverse problem
   VectorOut<double> x, y, given;
 };
 
-/// What of an inverse problem `draw` writes besides `given`.
+/// What of an inverse problem `draw` writes in addition to `given`.
 enum class Drawn : std::uint8_t {
   unknowns,      ///< x; y = F(x | given)
   both,          ///< y, and the x that explains it
@@ -158,7 +158,8 @@ class Jvp {
                            Workspace& work) const = 0;
 };
 
-/// What products with the Hessian of a loss need beside both derivatives.
+/// What products with the Hessian of a loss need in addition to both
+/// derivatives.
 template <class T>
 class PullbackTangent {
  public:

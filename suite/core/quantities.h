@@ -1,5 +1,4 @@
-/// What stands in the columns of a problem's arrays, for the files of its
-/// cases.
+/// What the columns of a problem's arrays are, for the files of its cases.
 #pragma once
 
 #include <string>

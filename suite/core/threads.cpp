@@ -29,10 +29,10 @@ void pause() {
 #endif
 }
 
-/// Waits until a number changes: briefly awake, then asleep (a futex). To stay
+/// Waits until a number changes: briefly awake, then asleep (a futex). Staying
 /// awake is worth it where that is sooner than a wake-up, as between the steps
-/// of a small network. On a core that others share it only keeps them, and who
-/// is waited for, from going on. How long the last waits were decides.
+/// of a small network. On a shared core it only holds up the other threads,
+/// also the one that is waited for. How long the last waits were decides.
 class Waiting {
  public:
   template <class T>

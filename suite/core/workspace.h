@@ -1,5 +1,6 @@
-/// Scratch memory and tapes: everything a kernel needs beside its arguments.
-/// Both settle within the first call of a size and allocate nothing afterwards.
+/// Scratch memory and tapes: everything a kernel needs in addition to its
+/// arguments. Both settle within the first call of a size and allocate nothing
+/// afterwards.
 #pragma once
 
 #include <cstddef>

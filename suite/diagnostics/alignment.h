@@ -1,7 +1,7 @@
 /// Measures how often gradients, and the updates of a network trained with
 /// them, point at the solution (JPO paper, Secs. 2-3, Fig. 2).
 ///
-/// A repetition draws the case's n problems anew, and a network if there is
+/// A repetition draws new n problems of the case, and a new network if there is
 /// one; its data depend on the case's seed, n and its own number only, so few
 /// repetitions are a prefix of many. Without a network, all problems share one
 /// x ~ U(-1, 1) and the question is whether the sum of their gradients, or the

@@ -22,7 +22,7 @@ class Diagnostic : public Stage {
  protected:
   virtual std::string kind() const = 0;
   virtual Options settings() const = 0;
-  /// Those it looks at, beside the experiment's.
+  /// Those it looks at, in addition to the experiment's.
   virtual std::vector<ProblemRecipe> problems() const { return {}; }
   /// Fills `out.arrays`, every number finite, and starts the solving clock.
   virtual void diagnose(StageRun& run, Outcome& out) const = 0;

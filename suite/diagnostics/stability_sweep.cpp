@@ -19,7 +19,7 @@ namespace {
 
 constexpr Index kSteps = 16;
 constexpr double kWidest = 0.1, kNearby = 1e-7, kRatio = 4;
-constexpr double kBeside = 1e-2;  ///< of a step, beside its direction
+constexpr double kBeside = 1e-2;  ///< of a step, across its direction
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kSingleForward = 1e-3, kSingleAdjoint = 1e-2;
@@ -58,7 +58,7 @@ Side evaluate(const ProblemRecipe& recipe,
 
 /// d(k, j): central difference of w . F along v with the k-th step. Far from
 /// the origin the points move by whole units of rounding only: what x_bar says
-/// about the part beside v is taken out, and a step that misses v is no number.
+/// about the part across v is taken out, and a step that misses v is no number.
 Batch<double> central_differences(const Problem<double>& problem,
                                   const Batch<double>& x,
                                   const Batch<double>& given,

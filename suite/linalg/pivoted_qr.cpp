@@ -53,7 +53,7 @@ void PivotedQr::move_longest_to(Index k) {
             order_[static_cast<std::size_t>(longest)]);
 }
 
-/// The length of column j without its entry k; measured anew where the update
+/// The length of column j without its entry k; measured again where the update
 /// has lost half of the digits (LAPACK Working Note 176).
 void PivotedQr::shorten(Index k, Index j) {
   if (length_(j) == 0) return;

@@ -10,8 +10,8 @@
 /// Measured on one Zen 3 core, float, PHYSINV_NATIVE, GFlop/s with 8 and 128
 /// samples, 128 positions, 16 -> 16 channels: 71 and 79; one `gemm` per
 /// position 50 and 71; im2col and one `gemm` 28 and 33. At 256 positions,
-/// 32 -> 16: 91 and 66 against 62 and 57, 28 and 14. (Eigen's best product
-/// beside them: 52.) Weight gradient, 16 -> 16: 48 and 74.
+/// 32 -> 16: 91 and 66 against 62 and 57, 28 and 14. (For comparison, Eigen's
+/// best product: 52.) Weight gradient, 16 -> 16: 48 and 74.
 ///
 /// Bits: `convolve` adds a sample's products one by one in the order of taps
 /// and channels, by fused multiply-add, whatever tile it falls into. The
@@ -47,7 +47,7 @@ void pack_weights(const ConvShape& shape, const T* weights, T* packed);
 template <class T>
 void pack_flipped(const ConvShape& shape, const T* weights, T* packed);
 
-/// Whether a product replaces what it is stored to or goes on from it.
+/// Whether a product replaces its output or is added to it.
 enum class Into : std::uint8_t { nothing, sum };
 
 /// y[p][o] = bias[o] + sum over taps t and channels c of

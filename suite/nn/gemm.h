@@ -12,7 +12,7 @@
 /// in the order of k, by fused multiply-add in a register. They depend neither
 /// on m, n, the neighbours, the tile it falls into, nor on the threads.
 ///
-/// Why not Eigen's product: it packs both operands anew on each call, its
+/// Why not Eigen's product: it packs both operands again on each call, its
 /// summation order depends on the shape, and it cannot end with an activation.
 /// Measured on one Zen 4 core, float, GFlop/s, x86-64-v3 build, ours against
 /// Eigen 3.4: 110 against 104 at 128x128x128 (Eigen's best, at 1024, is 105),

@@ -1,7 +1,7 @@
-// The products of networks by libraries, beside the suite's own: convolutions
-// by oneDNN in whatever order of memory it likes best, small matrices by
-// libxsmm. Rows that the build links a library for (PHYSINV_BENCH_DNNL,
-// PHYSINV_BENCH_XSMM). One thread.
+// The products of networks by libraries, to compare with the suite's own:
+// convolutions by oneDNN in whatever order of memory it likes best, small
+// matrices by libxsmm. Rows that the build links a library for
+// (PHYSINV_BENCH_DNNL, PHYSINV_BENCH_XSMM). One thread.
 #include <unordered_map>
 #include <utility>
 #include <vector>

@@ -29,8 +29,8 @@
 
 namespace physinv::nn {
 
-/// What a layer uses beside its input and output: where its numbers are, and
-/// what a pass has left on the tape.
+/// What a layer uses in addition to its input and output: where its numbers
+/// are, and what a pass has left on the tape.
 template <class T>
 struct Replay {
   const T* parameters = nullptr;  ///< this layer's part of the flat vector
@@ -138,7 +138,7 @@ class Layer {
   virtual std::vector<TensorInfo> tensors() const { return {}; }
   virtual Index state_count() const { return 0; }
   virtual void initialize_state(T* /*state*/) const {}
-  /// Tape slots it needs beside its input and output.
+  /// Tape slots it needs in addition to its input and output.
   virtual std::size_t slots() const { return 0; }
 
   /// Whether `backward`, `tangent` and its reverse read y. If not, a layer

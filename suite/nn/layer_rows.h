@@ -1,5 +1,5 @@
 /// The stacked Jacobian of a network by its layers, without the Jacobian: what
-/// half-inverse gradients ask of a network beside its gradients.
+/// half-inverse gradients need of a network in addition to its gradients.
 #pragma once
 
 #include <vector>

@@ -28,8 +28,7 @@ struct UnetOptions {
   Index levels = 4, features = 16;
   Index outputs = 1;  ///< fields
   Index hidden = 0;   ///< columns of all fields, the first ones, that are read
-                      ///< as zero and of which nothing is told; two outputs
-                      ///< or more
+                      ///< as zero and have no output; two outputs or more
   Padding padding = Padding::zero;
   bool batch_statistics = false;  ///< in every pass, see ConvOptions
   Init init = Init::fan_in;
