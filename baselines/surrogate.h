@@ -1,8 +1,8 @@
 /// The network N~ that the neural adjoint (neural_adjoint.h) searches: it
 /// learns the forward process from labelled samples.
 ///
-/// Stage `fit`; its estimate is the start. Arrays left, beside a regression's:
-/// `parameters`, `state`.
+/// Stage `fit`; its estimate is the start. Arrays left, in addition to a
+/// regression's: `parameters`, `state`.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,6 @@
 /// What solvers share that run many independent problems together: they ask for
 /// a batch of evaluations, one trial point of each unfinished problem, and are
-/// told losses and gradients.
+/// given losses and gradients.
 ///
 ///   Bfgs solver(options);
 ///   solver.start(x0);                       // d x n, one problem per column
@@ -47,7 +47,7 @@ class BatchedSolver {
   /// Losses and gradients at `points()`. A loss or gradient that is not finite
   /// marks a place that no problem moves to.
   void supply(VectorIn<double> loss, BatchIn<double> gradient);
-  /// Problems whose next trial point is their iterate, which is known, go on
+  /// Problems whose next trial point is their iterate, which is known, continue
   /// without an evaluation. False if there are none; what they accept is
   /// `accepted` then. Without the call they are evaluated once more.
   virtual bool supply_known() { return false; }

@@ -16,7 +16,7 @@
 namespace physinv {
 namespace {
 
-/// All stages stand here; each has a solver of its own.
+/// All stages are in this file; each has its own solver.
 Sources only(const char* used) {
   Sources sources;
   for (const std::string header : {"optimizers/bfgs.h",

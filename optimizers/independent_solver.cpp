@@ -58,7 +58,7 @@ bool IndependentSolver::supply_known() {
   return true;
 }
 
-/// Goes on as long as the next trial point is the one at hand.
+/// Continues as long as the next trial point is the one at hand.
 bool IndependentSolver::answer(Index i, const Point& at, double* trial) {
   bool goes_on = rounds_ == 0 ? open_run(i, at, trial) : advance(i, at, trial);
   if (known_point_ == KnownPoint::evaluate) return goes_on;

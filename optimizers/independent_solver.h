@@ -22,7 +22,7 @@ class IndependentSolver : public BatchedSolver {
   };
 
   /// What becomes of a trial point that is the last one evaluated, to the bit:
-  /// it is evaluated again, or, as in SciPy, its search goes on with what is
+  /// it is evaluated again, or, as in SciPy, its search continues with what is
   /// known of it.
   enum class KnownPoint : std::uint8_t { evaluate, reuse };
   explicit IndependentSolver(KnownPoint known) : known_point_(known) {}

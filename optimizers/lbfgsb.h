@@ -6,9 +6,9 @@
 /// ACM TOMS 38 (2011). Steps aim at a minimum of the model inside the bounds
 /// (steps/box_step.h); their length is that of More and Thuente.
 ///
-/// A search that fails starts the problem's memory anew, and ends the problem
-/// if there is none. A value that is not finite fails a search; lbfgsb.f would
-/// walk on with NaN.
+/// A search that fails clears the problem's memory, and ends the problem if it
+/// is empty. A value that is not finite fails a search; lbfgsb.f would walk on
+/// with NaN.
 #pragma once
 
 #include <utility>

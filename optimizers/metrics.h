@@ -1,4 +1,4 @@
-/// Numbers of a case's own beside its losses, at every point of the curve.
+/// A case's own numbers in addition to its losses, at every point of the curve.
 #pragma once
 
 #include <functional>
@@ -39,7 +39,7 @@ class MetricsRecorder {
   MetricsRecorder(const Metrics& metrics, const StageRun& run);
 
   bool empty() const { return values_.rows() == 0; }
-  /// The estimates x (n columns) as they stand now, and y(x).
+  /// The present estimates x (n columns), and y(x).
   void operator()(VectorIn<double> parameters,
                   BatchIn<double> x,
                   BatchIn<double> y);

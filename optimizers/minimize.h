@@ -1,5 +1,5 @@
 /// Any batched solver (batched_solver.h) on the problems of a case, as a stage
-/// of a method. With a solver of one's own:
+/// of a method. With a solver of your own:
 ///
 ///   make_stage({.name = "solve",
 ///               .needs = Needs::forward | Needs::vjp,

@@ -11,8 +11,8 @@
 /// The search counts as set-up: its time is on the record's set-up clock, its
 /// calls of the physics are not counted.
 ///
-/// Arrays left beside those of `train`: `searched_rates` and `searched_loss`
-/// (1 x rates; what is not finite is 1e300), `rate` (1).
+/// Arrays left in addition to those of `train`: `searched_rates` and
+/// `searched_loss` (1 x rates; what is not finite is 1e300), `rate` (1).
 #pragma once
 
 #include <memory>

@@ -38,7 +38,7 @@ struct StageFacts {
   Needs needs;
   Deferred<Options> options;
   Index iterations;
-  bool own_length = false;  ///< `iterations` stands, whatever a row says
+  bool own_length = false;  ///< `iterations` is used, whatever a row says
   Networks networks = Networks::predictor;
   std::function<double(const CaseSize& size)> operations;
   /// What the options bring in, and leave without effect.

@@ -15,7 +15,7 @@ class StepwiseSolver {
   /// What the first step would allocate and fill.
   virtual void warm_up() {}
   virtual void step() = 0;
-  /// Where it stands. Not part of its work.
+  /// The present estimate. Not part of its work.
   virtual void estimate(BatchOut<double> x) = 0;
   /// Adds statuses, counts, arrays and bytes to what has run its iterations.
   virtual void export_to(Outcome& /*out*/) {}

@@ -5,8 +5,8 @@
 ///
 /// the signal being, unless another is named, the gradient of the batch's loss
 /// through the solver. The estimates of the case's own problems come from the
-/// network as it stands. Ends with status diverged before an update that would
-/// make a parameter infinite or NaN.
+/// present network. Ends with status diverged before an update that would make
+/// a parameter infinite or NaN.
 ///
 /// Arrays left: `parameters`, `state` (a later stage of the chain starts from
 /// them), `samples_drawn` (1), `mean_loss` (1 x points of the curve, over the
@@ -38,7 +38,7 @@ struct TrainingOptions {
   Index batch = 128;
   Index chunk = 0;  ///< see SignalOptions
   Index iterations = 1000;
-  bool own_length = false;    ///< `iterations` stands, whatever a row says
+  bool own_length = false;    ///< `iterations` is used, whatever a row says
   double gradient_scale = 1;  ///< see SignalOptions
   bool fresh = false;         ///< every update draws samples never seen before
   Index set = 0;              ///< see BatchOptions

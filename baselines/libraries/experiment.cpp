@@ -1,5 +1,5 @@
-// Experiments `libraries/<problem>`: problems, starts and sizes of the suite's
-// own, solved by the suite's optimizers and by those of other libraries.
+// Experiments `libraries/<problem>`: the suite's problems, starts and sizes,
+// solved by its optimizers and by those of other libraries.
 #include <algorithm>
 #include <string>
 #include <utility>

@@ -90,7 +90,7 @@ struct LibrarySolver::Run final : Objective {
 double LibrarySolver::Run::evaluate(const double* x, double* gradient) {
   if (++calls > solver.task_.evaluations) {
     spent = true;
-    // One that goes on all the same is not resumed any more.
+    // One that still continues is not resumed any more.
     if (++refusals > kTries) fiber->suspend();
     throw BudgetSpent{};
   }

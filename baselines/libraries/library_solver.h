@@ -5,8 +5,8 @@
 /// Whatever a library does is a result:
 ///
 /// - An evaluation past the problem's budget throws `BudgetSpent` through the
-///   library. One that swallows it kTries times is left where it stands. The
-///   problem ends as `maxiter`.
+///   library. One that swallows it kTries times is not resumed. The problem
+///   ends as `maxiter`.
 /// - What a library throws is a message; the problem keeps its last iterate and
 ///   ends as `linesearch`, after a loss or gradient that was not finite as
 ///   `nonfinite`.

@@ -10,10 +10,10 @@
 
 namespace libraries {
 
-/// A row for each solver, of its runs beside those of `jpo`: better, equal and
-/// f_N = better + equal / 2 of the network, and of its refinement; the paper's
-/// numbers of `varied` ("jpo/billiards") stand beside those of `bfgs`, which is
-/// the paper's. And f_N over n, a line for each solver.
+/// A row for each solver, of its runs compared with those of `jpo`: better,
+/// equal and f_N = better + equal / 2 of the network, and of its refinement;
+/// the paper's numbers of `varied` ("jpo/billiards") are next to those of
+/// `bfgs`, which is the paper's. And f_N over n, a line for each solver.
 physinv::Section whose_bfgs(const std::string& varied,
                             const physinv::Evidence& evidence);
 

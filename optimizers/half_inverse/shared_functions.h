@@ -29,10 +29,10 @@ namespace physinv::hig {
 
 class SharedFunctions {
  public:
-  /// [R h] (p x p + 1) with columns in the order `place` tells: parameter
-  /// place(j) is column j. False if the network or its solver is of another
-  /// kind, or there are too few samples. `layers` as RowJacobian
-  /// gives them, g and rows sample-major, `per_sample` functions.
+  /// [R h] (p x p + 1) with columns in the order of `place`: parameter place(j)
+  /// is column j. False if the network or its solver is of another kind, or
+  /// there are too few samples. `layers` as RowJacobian gives them, g and rows
+  /// sample-major, `per_sample` functions.
   template <class T>
   bool triangle(std::span<const LayerRows<T>> layers,
                 VectorIn<T> parameters,

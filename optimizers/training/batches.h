@@ -1,8 +1,7 @@
 /// Which samples an update sees, when it does not see all: consecutive slices
 /// of a training set, in the same order every epoch, or
-/// fresh samples for every update, which are drawn while the clock stands
-/// still. Nothing allocates after the first batch, unless every batch is drawn
-/// afresh.
+/// fresh samples for every update, which are drawn while the clock is stopped.
+/// Nothing allocates after the first batch, unless every batch is drawn afresh.
 #pragma once
 
 #include "suite/core/check.h"

@@ -117,7 +117,7 @@ void HessianFreeRule<T>::export_to(Outcome& out) const {
 template <class T>
 std::size_t HessianFreeRule<T>::bytes() const {
   const auto parameters = static_cast<std::size_t>(theta_.size());
-  // g, start, and four of the solve beside those it stores.
+  // g, start, and four of the solve in addition to those it stores.
   return 3 * parameters * sizeof(T) +
          (6 * parameters + stored_) * sizeof(double);
 }

@@ -1,6 +1,6 @@
 /// The problem's own loss as a LateError: what a training ends at on the
 /// samples that it sees, whatever its signal. For problems that are given
-/// nothing beside their unknowns.
+/// nothing in addition to their unknowns.
 #pragma once
 
 #include "optimizers/training/signal_recipe.h"

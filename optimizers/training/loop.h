@@ -23,15 +23,15 @@ struct Training {
   Batches<T>* batches;  ///< null: the signal sees all samples every time
   /// Estimates of the case's problems, when a point of the curve is due.
   std::function<void(BatchOut<double> x)> estimate;
-  /// Told of each point's estimates and of their observations.
+  /// Gets each point's estimates and their observations.
   std::function<void(BatchIn<double> x, BatchIn<double> y)> measured =
       [](BatchIn<double>, BatchIn<double>) {};
   /// What the two collect, if they do.
   std::function<void(Archive& archive)> serialize = {};
 };
 
-/// With a checkpoint, goes on from the state that is there and lays one down
-/// when due: same bits as without.
+/// With a checkpoint, continues from the state that is there and saves one when
+/// due: same bits as without.
 ///
 /// Leaves everything but the estimates. Ends with status diverged when the
 /// signal has nothing to learn from, or the rule refuses an update.

@@ -27,9 +27,9 @@ class Signal {
   /// Fills caches, before the clock starts; leaves no count behind.
   virtual void warm_up() {}
 
-  /// Evaluates the parameters as they stand, before a point of the curve is
-  /// measured, for signals whose own passes are the estimates. No update
-  /// follows the last one. False: there is nothing to learn from any more.
+  /// Evaluates the present parameters, before a point of the curve is measured,
+  /// for signals whose own passes are the estimates. No update follows the last
+  /// one. False: there is nothing to learn from any more.
   virtual bool evaluate([[maybe_unused]] bool last) { return true; }
 
   /// By the parameters, of the current batch's objective, in memory that may

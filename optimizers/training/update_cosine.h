@@ -13,8 +13,8 @@
 namespace physinv {
 
 /// The updates of `inverse_proxy`, to the bit. Leaves `update_cosine` (1 x
-/// updates looked at) beside what it leaves. For first-order rules; the passes
-/// of looking are counted, but not timed.
+/// updates looked at) in addition to what it leaves. For first-order rules; the
+/// passes of looking are counted, but not timed.
 SignalRecipe proxy_with_cosines(
     ProxyNorm norm = ProxyNorm::square,
     ProxyPrecision precision = ProxyPrecision::of_network);

@@ -5,10 +5,10 @@
 ///
 /// M: faces between two fluid cells. C: soft obstacles, the product over them
 /// of 1 - clip(1 - sqrt(2) d, 0, 1) at distance d (maximum norm, in cells) of
-/// the face's centre; 0 on and inside an obstacle, 0.707 half a cell beside.
-/// A: graph Laplacian of the fluid cells and open faces. It ignores a constant
-/// per connected region: one cell of each is grounded, which changes nothing,
-/// as what flows out of a region sums to zero.
+/// the face's centre; 0 on and inside an obstacle, 0.707 half a cell away. A:
+/// graph Laplacian of the fluid cells and open faces. It ignores a constant per
+/// connected region: one cell of each is grounded, which changes nothing, as
+/// what flows out of a region sums to zero.
 #pragma once
 
 #include <vector>

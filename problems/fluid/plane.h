@@ -46,7 +46,7 @@ struct Velocity {
 /// Planes of memory that one call of any kernel needs for itself.
 inline constexpr Index kScratchPlanes = 3;
 
-/// What stands beyond the border: nothing, or the other end.
+/// What is beyond the border: nothing, or the other end.
 enum class Edge : std::uint8_t { zero, periodic };
 
 /// Writes the padding of a periodic plane.
@@ -65,7 +65,7 @@ void wrap(const Plane& g, P* f) {
     copy(g.rows - 1 - k, -1 - k), copy(k, g.rows + k);
 }
 
-/// Its transpose: adds the padding to the points it stands for, and clears it.
+/// Its transpose: adds the padding to the points it copies, and clears it.
 template <class P>
 void fold(const Plane& g, P* f) {
   const auto add = [&](Index from, Index to) {

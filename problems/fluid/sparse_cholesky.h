@@ -20,7 +20,7 @@ class SparseCholesky {
   Index size() const { return static_cast<Index>(inverse_diagonal_.size()); }
   /// Numbers off the diagonal of the factor.
   Index entries() const { return static_cast<Index>(rows_.value.size()); }
-  /// Where unknown i stands in x.
+  /// The place of unknown i in x.
   Index position(Index i) const { return position_[i]; }
 
   /// x = b on entry; both in the order of `position`.

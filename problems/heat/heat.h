@@ -19,8 +19,8 @@
 /// that add up; y = P(x), without noise. The mean of x is that of y.
 ///
 /// Everything is computed in double, a register of fields at a time; single
-/// precision is for what stands at the borders. A column that is not finite
-/// gives NaN in its own column only.
+/// precision is for inputs and outputs. A column that is not finite gives NaN
+/// in its own column only.
 #pragma once
 
 #include <array>

@@ -7,7 +7,7 @@
 ///
 /// is part t (real, imaginary) of mode(q) over rows of part s of mode(p) over
 /// columns. So a factor that knows only |k| and |l| multiplies four numbers;
-/// `scale_modes` puts together what stands for one mode.
+/// `scale_modes` combines the numbers of one mode.
 #pragma once
 
 #include <array>

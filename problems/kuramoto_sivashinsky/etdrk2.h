@@ -46,7 +46,7 @@ class Etdrk2 {
   /// Lanes that a sample has.
   static constexpr Index kSide = Fft::kSide;
 
-  /// Where value r of a field stands: lane at % kSide of pack at / kSide.
+  /// The place of value r of a field: lane at % kSide of pack at / kSide.
   static Index point(Index r) { return Fft::point(r); }
   /// Packs that hold a field, and any field or spectrum.
   Index field() const { return fft_.field(); }

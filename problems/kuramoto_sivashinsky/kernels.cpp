@@ -1,4 +1,4 @@
-/// Times of a simulation and of a gradient, beside the bare transforms that
+/// Times of a simulation and of a gradient, and of the bare transforms that
 /// they need: four real ones of 128 points per step and way. The counters are
 /// seconds per sample and step.
 #include "problems/kernels.h"

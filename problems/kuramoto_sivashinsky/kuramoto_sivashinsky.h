@@ -85,7 +85,7 @@ KuramotoSivashinskyOperators operators(
 template <class T>
 struct Etdrk2Kernels;
 
-/// What the problem has besides: derivatives by the initial state.
+/// What the problem has in addition: derivatives by the initial state.
 template <class T>
 class StatePullback {
  public:

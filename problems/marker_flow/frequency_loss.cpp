@@ -70,7 +70,7 @@ double FrequencyLoss::operator()(VectorIn<double> difference,
     }
     const double twice = k > 0 && 2 * k < n ? 2 : 1;
     Vector<double> g_re = Vector<double>::Zero(n), g_im = g_re;
-    // Half a turn per cell stands once.
+    // Half a turn per cell is there once.
     for (Index l = 2 * reach < n ? -reach : 1 - reach; l <= reach; ++l) {
       const double w = weight(k, l);
       if ((k == 0 && l == 0) || w * most <= least_) continue;

@@ -19,7 +19,7 @@
 /// invert: an analytic estimate, no exact inverse. The final velocity of the
 /// guess, turned round, carries the observed marker back. A uniform flow that
 /// brings the marker to the middle, plus a vortex there: that of the guess,
-/// corrected by how far the centres of mass on both ways stand apart across the
+/// corrected by the distance of the centres of mass on both ways across the
 /// direction to the vortex. Shorter waves are deliberately left out.
 ///
 /// Numbers that are not finite, or beyond 1e6, give NaN in their own column.

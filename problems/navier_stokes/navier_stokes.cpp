@@ -53,7 +53,7 @@ struct Kernel {
     return s;
   }
 
-  /// t of each unknown besides the blast itself.
+  /// t of each unknown, in addition to the blast itself.
   struct Unknowns : Blast<P> {
     P t[3];
   };
@@ -154,7 +154,7 @@ struct Kernel {
     });
   }
 
-  /// Runs a block and, beside it, its three tangents (12 planes).
+  /// Runs a block and, at the same time, its three tangents (12 planes).
   void push(const Block<T>& block,
             BatchIn<T> x,
             BatchIn<T> given,

@@ -66,7 +66,7 @@ Pair step_of(const Frame& f, double limit, const Pair& x, const Pair& target) {
     if (!(m.curvature[i] > middle))
       n[i] = std::min(n[i], quotient(limit, m.q[i]));
   }
-  // A slope that is not finite has no sign to go by.
+  // A slope that is not finite has no sign.
   if (!std::isfinite(m.q[0]) || !std::isfinite(m.q[1]))
     return {std::nan(""), std::nan("")};
   return f.back(-signed_as(m.q[0], n[0]), -signed_as(m.q[1], n[1]));

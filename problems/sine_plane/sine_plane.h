@@ -1,7 +1,7 @@
 /// A sine and a line, stretched against each other and turned: the
 /// two-dimensional test of scale-invariant training (SIP paper, App. B.1, Fig.
-/// 5; the division by xi stands inside the sine, as in the authors' code: with
-/// the printed form most targets have no solution).
+/// 5; the division by xi is inside the sine, as in the authors' code: with the
+/// printed form most targets have no solution).
 ///
 ///   w = R x,  u = (gamma / xi w_1, gamma xi w_2),  y = (sin u_1, u_2),
 ///   R = [[cos phi, -sin phi], [sin phi, cos phi]]

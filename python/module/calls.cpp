@@ -70,7 +70,8 @@ class Call {
   auto linearization() const {
     return std::make_shared<Linearization<T>>(self_.sides(), samples);
   }
-  /// f(scratch), for others to run beside it; of no samples nothing.
+  /// f(scratch), while other threads of Python can run; nothing without
+  /// samples.
   template <class F>
   void compute(F&& f) const {
     if (samples == 0) return;

@@ -68,7 +68,7 @@ std::vector<Status> statuses_of(const py::object& values, Index n) {
 
 /// x, or x and a dict of status, iterations, evaluations and arrays per
 /// example and of a message. The record has the counts of the suite, and what a
-/// method says beside them.
+/// method reports in addition.
 Outcome outcome_of(py::object result, const Solving& solving) {
   py::dict more;
   if (py::isinstance<py::tuple>(result) && py::len(result) == 2) {
@@ -117,8 +117,8 @@ struct Wanted {
   Networks networks = Networks::none;
 };
 
-/// What Python's libraries compute with: so many threads as the case has, for
-/// as long as it stands (physinv/_threads.py).
+/// Python's libraries compute with as many threads as the case has, during its
+/// lifetime (physinv/_threads.py).
 class CaseThreads {
  public:
   explicit CaseThreads(int count)
@@ -158,7 +158,7 @@ class PythonStage final : public Stage {
         iterations_(iterations) {
     renew();
   }
-  /// Asks for the words anew, as what the method refers to may have changed.
+  /// Asks for the words again, as what the method refers to may have changed.
   void renew() const {
     const auto words =
         words_().cast<std::vector<std::pair<std::string, std::string>>>();
@@ -167,11 +167,11 @@ class PythonStage final : public Stage {
   }
   std::string name() const override { return "solve"; }
   Needs needs() const override { return wanted_.needs; }
-  /// With the hash of the source, which so stands in the key.
+  /// With the hash of the source, which is so part of the key.
   Options options() const override { return options_; }
   Index default_iterations() const override { return iterations_; }
   Networks networks() const override { return wanted_.networks; }
-  /// Beside that, what the method sees of the suite.
+  /// In addition, what the method sees of the suite.
   Sources sources() const override {
     Sources all = {.roots = {"suite/core/oracle.h", "suite/core/probe.h"},
                    .unused = {}};

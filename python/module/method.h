@@ -8,8 +8,8 @@
 
 namespace physinv::python {
 
-/// With the methods in Python that stand in `before`, where the problem of
-/// `fresh` provides what they need.
+/// With the methods in Python that `before` has, where the problem of `fresh`
+/// provides what they need.
 Experiment with_methods_of(const Experiment& before, Experiment fresh);
 
 void define_method(pybind11::module_& module);

@@ -14,7 +14,7 @@ namespace physinv::hig {
 
 /// "hig/oscillators-jacobians" of hig/oscillators, which is registered.
 void add_jacobian_times(Registry& r, const std::string& experiment);
-/// A method beside the row of the paper's table of "adam" or "hig" with this
+/// A method next to the row of the paper's table of "adam" or "hig" with this
 /// batch, and what takes the Jacobian of the row.
 CostLine cost_line(const std::string& experiment,
                    std::string_view optimizer,

@@ -36,7 +36,7 @@ inline std::vector<AblationPoint> ablation_points() {
 }
 
 /// Table 2 has 128 for Fig. 2b; the suite's figures have 64. A study for each;
-/// tables of both stand with the first one.
+/// tables of both are with the first one.
 inline constexpr Index kAblationBatches[] = {128, 64};
 inline std::string study_of(Index batch) {
   return fmt::format("studies/oscillators-batch-{}", batch);

@@ -20,7 +20,7 @@
 namespace physinv::oscillators {
 namespace {
 
-/// The lowest test loss of any seed beside the paper's best runs of an hour.
+/// The lowest test loss of any seed next to the paper's best runs of an hour.
 Table final_losses(const Evidence& evidence) {
   Table table{.id = "final",
               .title = "Lowest final loss over seeds",
@@ -134,7 +134,7 @@ Figure evolution_figure(const Evidence& e,
   return figure;
 }
 
-/// What the runs were made with, beside the paper's.
+/// What the runs were made with, next to the paper's.
 Table hyperparameters(const Evidence& evidence) {
   Table table{.id = "table2",
               .title = "Hyperparameters of Fig. 2b",

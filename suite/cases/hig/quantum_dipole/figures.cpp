@@ -175,7 +175,7 @@ Panel probability(const Answered& answer, std::string title) {
   return panel;
 }
 
-/// The probability at the end beside the wanted one.
+/// The probability at the end next to the wanted one.
 Panel at_the_end(const Answered& answer, std::string title) {
   const AnyProblem<double> dipole(problems::quantum_dipole());
   Workspace work;

@@ -1,4 +1,4 @@
-/// What runs of the quantum dipole record beside their losses.
+/// What runs of the quantum dipole record in addition to their losses.
 #pragma once
 
 #include "optimizers/metrics.h"

@@ -1,5 +1,6 @@
-/// What a run of the toy fit records beside its losses: both components, the
-/// hidden neurons, and the path of one point (HIG paper, Fig. 1).
+/// What a run of the toy fit records in addition to its losses: both
+/// components, the hidden neurons, and the path of one point (HIG paper, Fig.
+/// 1).
 #pragma once
 
 #include "optimizers/metrics.h"

@@ -1,6 +1,6 @@
 // JPO paper, Tables 4 and 5, Sec. 4: precision and tolerance of BFGS and of the
-// refinement are not printed. All else is that of the experiment which is
-// varied, at some of its sizes.
+// refinement are not printed. Everything else is that of the experiment which
+// is varied, at some of its sizes.
 #include <string_view>
 #include <vector>
 

@@ -1,4 +1,5 @@
-// A shot and Fig. 4a of the JPO paper, beside what all its experiments show.
+// A shot and Fig. 4a of the JPO paper, in addition to what all its experiments
+// show.
 #include <fmt/format.h>
 
 #include <array>

@@ -36,7 +36,7 @@ void append_quantiles(Series& s, double x, const std::vector<double>& values) {
 }
 
 // Mean loss at the last measured point up to an iteration: a run that ended
-// stays where it is while runs of other seeds go on.
+// stays where it is while runs of other seeds continue.
 std::optional<double> loss_at(const Curve& curve, double iteration) {
   const auto after = std::upper_bound(
       curve.iteration.begin(), curve.iteration.end(), iteration);

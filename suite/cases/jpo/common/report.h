@@ -73,7 +73,7 @@ class JpoReport {
   Index largest_size() const;  ///< of problems, with a network if there is one
 
  private:
-  /// What stands for the seeds: quantiles on logarithmic axes.
+  /// What represents the seeds: quantiles on logarithmic axes.
   enum class Over { means, quantiles };
   std::vector<Index> sizes() const {
     return evidence_.results.sizes(evidence_.experiment);

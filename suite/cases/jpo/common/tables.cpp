@@ -54,7 +54,8 @@ Cell JpoReport::over_seeds(const Select& runs,
   return cell_of(values(runs, n, value));
 }
 
-/// Per cent of all runs, and the deviation of each seed's mean; beside BFGS.
+/// Per cent of all runs, and the deviation of each seed's mean; compared with
+/// BFGS.
 Cell JpoReport::over_runs(const Select& runs, const RunValue& share) const {
   for (const Select& each : {runs, jpo::bfgs()})
     if (const auto failed = failed_text(evidence_, each); !failed.empty())

@@ -1,6 +1,6 @@
 /// What claims about the JPO paper's inverse problems are made of: runs by
-/// their place in a chain, and numbers of one run, many of them beside plain
-/// BFGS on the same problems.
+/// their place in a chain, and numbers of one run, many of them compared with
+/// plain BFGS on the same problems.
 ///
 ///   percent(mean(refined("jpo"), better()))            // Table 5
 ///   share_of_examples(bfgs(), largest_sets(if_solved(1e-6)), holds)

@@ -29,7 +29,7 @@ Quantity within_ten() {
 Quantity most_iterations() {
   return highest(kBfgsRuns, of_row(iterations(), most_of));
 }
-/// How far outliers stand out.
+/// How large outliers are.
 Quantity mean_over_median() {
   return median(kBfgsRuns, jpo::largest_sets(RunValue([](const Run& run) {
                   std::vector<double> all = losses()(run);

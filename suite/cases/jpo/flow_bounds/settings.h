@@ -13,7 +13,7 @@ struct Choice {
   Index bounded;  ///< so many, from x0 on
   const char* title;
 
-  /// A study for each; a table of all stands with the first one.
+  /// A study for each; a table of all is with the first one.
   std::string name() const {
     return fmt::format("studies/navier-stokes-bounds-{}", bounded);
   }

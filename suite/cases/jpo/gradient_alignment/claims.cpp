@@ -37,7 +37,7 @@ void add_theories(ClaimNames& names) {
             }));
 }
 
-/// Beside theory, or beside other shares.
+/// From theory, or from other shares.
 void add_distances(ClaimNames& names) {
   names.add("off_by", off_by);
   names.add("largest_distance", largest_distance);

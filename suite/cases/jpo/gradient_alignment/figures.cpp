@@ -182,7 +182,7 @@ Table fits_table(const Fig2& f, const Published& published) {
   return table;
 }
 
-/// The normal approximations of the vote beside the exact binomial.
+/// The normal approximations of the vote next to the exact binomial.
 Table vote_table(const std::vector<Index>& sizes) {
   Table table{.id = "vote_theory",
               .title = fmt::format("Majority vote at SNR {}", kWeak),

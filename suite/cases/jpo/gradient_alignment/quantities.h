@@ -1,5 +1,5 @@
 /// What claims about Fig. 2 of the JPO paper are made of: shares of aligned
-/// gradients beside what theory says, over numbers of examples N.
+/// gradients next to what theory says, over numbers of examples N.
 #pragma once
 
 #include <functional>

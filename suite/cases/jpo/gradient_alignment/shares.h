@@ -1,4 +1,4 @@
-/// What was measured of Fig. 2 of the JPO paper, and the theory beside it.
+/// What was measured of Fig. 2 of the JPO paper, and the theory of it.
 #pragma once
 
 #include <algorithm>

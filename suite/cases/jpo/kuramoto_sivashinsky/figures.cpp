@@ -1,5 +1,5 @@
-// Fig. 5 and the numbers in the text of the JPO paper, beside what all its
-// experiments show.
+// Fig. 5 and the numbers in the text of the JPO paper, in addition to what all
+// its experiments show.
 #include <fmt/format.h>
 
 #include <string>
@@ -112,7 +112,7 @@ struct PrintedNumber {
   Quantity ours;
 };
 
-/// Numbers of Sec. 4 and App. D.3 that stand in no table.
+/// Numbers of Sec. 4 and App. D.3 that are in no table.
 std::vector<PrintedNumber> printed_numbers() {
   const auto solved = [](const Select& runs) {
     return percent(

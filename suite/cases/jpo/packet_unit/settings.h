@@ -13,7 +13,7 @@ namespace physinv::packet_unit {
 /// Samples in one unit.
 inline constexpr Index kUnits[] = {8, 32, 128};
 
-/// A study for each; a table of all stands with the first one.
+/// A study for each; a table of all is with the first one.
 inline std::string name_of(Index unit) {
   return fmt::format("studies/wave-packet-unit-{}", unit);
 }

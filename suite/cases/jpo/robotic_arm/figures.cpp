@@ -1,4 +1,5 @@
-// Poses and Fig. 25 of the JPO paper, beside what all its experiments show.
+// Poses and Fig. 25 of the JPO paper, in addition to what all its experiments
+// show.
 #include <fmt/format.h>
 
 #include <array>
@@ -68,7 +69,7 @@ Figure landscape() {
           "Target ({}, {}), all other unknowns 0.", kTarget[0], kTarget[1])};
 }
 
-/// The arm on its rail; the title tells how far the tip is from the target.
+/// The arm on its rail; the title says how far the tip is from the target.
 Panel pose(const FoundBy& found, const Pictured& problem) {
   const auto joints =
       arm_joints({found.x(0), found.x(1), found.x(2), found.x(3)});

@@ -1,4 +1,4 @@
-// Fig. 3 of the JPO paper, beside what all its experiments show.
+// Fig. 3 of the JPO paper, in addition to what all its experiments show.
 #include <fmt/format.h>
 
 #include <string>
@@ -122,7 +122,7 @@ JpoReportOptions report_options() {
           .picture = packets()};
 }
 
-/// Fig. 3c: gradient descent beside BFGS and JPO, at the largest n.
+/// Fig. 3c: gradient descent next to BFGS and JPO, at the largest n.
 Figure three_curves(JpoReportOptions options, const Evidence& e) {
   options.methods = {"gd", "jpo"};
   options.curves = {"fig3c", "Fig. 3c"};
@@ -148,7 +148,7 @@ Section report_head(const Evidence& e) {
   JpoReportOptions options = report_options();
   options.methods = {"jpo"};
   Section section = jpo_section(options, e);
-  // The paper's numbers stand with the other network.
+  // The paper's numbers are with the other network.
   for (Table& table : section.tables) table.where.clear();
   for (Figure& figure : section.figures) figure.where.clear();
   return section;

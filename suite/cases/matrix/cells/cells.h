@@ -33,7 +33,8 @@ struct MatrixProblem {
 };
 const std::vector<MatrixProblem>& problems();
 
-/// A row of the matrix beside the suite's own (own.h); one of the same id goes.
+/// A row of the matrix in addition to the suite's own (own.h); it replaces one
+/// of the same id.
 void add_problem(MatrixProblem problem);
 
 /// Why this cell is empty; nothing if it is not.

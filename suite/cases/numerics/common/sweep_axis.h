@@ -1,4 +1,4 @@
-/// What a sweep goes along.
+/// What a sweep varies.
 #pragma once
 
 #include <functional>

@@ -15,7 +15,7 @@ ProblemRecipe of_steps(Index steps) {
 }
 
 /// Two waves for each component, of which no two neighbours have one value: the
-/// limiter would stand on a kink there.
+/// limiter would be at a kink there.
 Vector<double> flow(double speed, Index cells) {
   const Index plane = cells * cells;
   const double turn = 2 * std::numbers::pi / double(cells);
@@ -32,8 +32,8 @@ Vector<double> flow(double speed, Index cells) {
 }
 
 /// At speed 1 on 64 cells a step crosses an eighth of a cell. Air at rest is a
-/// kink of the limiter, where the adjoint is that of one side; beyond
-/// speed 100 kinks stand closer than differences can step.
+/// kink of the limiter, where the adjoint is that of one side; beyond speed 100
+/// kinks are closer than differences can step.
 const SweepAxis kSpeeds{"speed", {1e-3, 0.1, 1, 10, 100, 1e7}, true};
 const SweepAxis kGrids{"cells a side", {16, 32, 64, 128}, true};
 const SweepAxis kTimes{"end time", {0.25, 1, 4, 16}, true};

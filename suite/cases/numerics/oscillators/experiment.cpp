@@ -1,5 +1,5 @@
 // The coupled oscillators under controls from nothing to far beyond what their
-// integrator stands, with steps from fine to coarse.
+// integrator can follow, with steps from fine to coarse.
 #include <cmath>
 
 #include "problems/oscillators/oscillators.h"

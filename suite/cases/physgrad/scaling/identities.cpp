@@ -155,7 +155,7 @@ Batch<double> local() {
   return found;
 }
 
-/// Where the Hessian is singular, x2 = 0, and beside.
+/// Where the Hessian is singular, x2 = 0, and next to it.
 Batch<double> singular() {
   Bench b(2);
   Batch<double> x = Batch<double>::Ones(2, 3), h(4, 3), step(2, 3);

@@ -74,7 +74,7 @@ inline double wrong_branch(const Batch<double>& roots) {
       (roots.row(2).array() * roots.row(1).array() <= 0).count());
 }
 
-/// Of the asked change of y, what a step's row comes to: largest over smallest.
+/// What a step's row reaches of the asked change of y: largest over smallest.
 inline OfArray spread_of_row(Index row) {
   return [row](const Batch<double>& inner) {
     return inner.row(row).maxCoeff() / inner.row(row).minCoeff();

@@ -1,5 +1,5 @@
-/// What a run of the exponential records beside its losses: errors of x, over
-/// all of its range and over thirds of it, and how flat the network is.
+/// What a run of the exponential records in addition to its losses: errors of
+/// x, over all of its range and over thirds of it, and how flat the network is.
 #pragma once
 
 #include "optimizers/metrics.h"

@@ -1,5 +1,5 @@
-/// What runs of the fluid experiments record beside their losses: means over
-/// the examples.
+/// What runs of the fluid experiments record in addition to their losses: means
+/// over the examples.
 #pragma once
 
 #include "optimizers/metrics.h"

@@ -1,4 +1,5 @@
-/// What runs of the heat experiment record beside their losses: errors of x.
+/// What runs of the heat experiment record in addition to their losses: errors
+/// of x.
 #pragma once
 
 #include "optimizers/metrics.h"

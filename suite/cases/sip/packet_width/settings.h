@@ -35,7 +35,7 @@ struct Choice {
   bool is_ours() const {
     return variance == 400 && !net.norm && !net.pool_last && !net.uniform;
   }
-  /// The study's experiments; a table of all stands with the first one.
+  /// The study's experiments; a table of all is with the first one.
   std::string name() const {
     return fmt::format("studies/sip-wave-packet-v{}{}{}{}",
                        variance,

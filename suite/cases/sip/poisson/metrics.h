@@ -1,6 +1,6 @@
-/// What runs of the Poisson experiments record beside their losses: errors of
-/// x, sums of |x - x*| over the cells, means over the examples (the paper's
-/// "MAE").
+/// What runs of the Poisson experiments record in addition to their losses:
+/// errors of x, sums of |x - x*| over the cells, means over the examples (the
+/// paper's "MAE").
 #pragma once
 
 #include "optimizers/metrics.h"

@@ -1,5 +1,5 @@
-/// What a run of the sine records beside its losses: how far estimates are from
-/// the nearest exact solution.
+/// What a run of the sine records in addition to its losses: how far estimates
+/// are from the nearest exact solution.
 #pragma once
 
 #include "optimizers/metrics.h"

@@ -1,5 +1,5 @@
-/// What a run of the SIP wave packet records beside its losses: how far its
-/// estimates are from the true positions, in samples.
+/// What a run of the SIP wave packet records in addition to its losses: how far
+/// its estimates are from the true positions, in samples.
 #pragma once
 
 #include <numbers>
