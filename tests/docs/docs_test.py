@@ -4,7 +4,7 @@
 README is short, every link leads to a file and place, commands have the verbs and
 flags of the program, counts are the program's and verdicts those of RESULTS.md,
 where what is not reproduced has a cause. Prose, help texts and what sources print
-have short sentences and usual words.
+have short sentences and usual words, comments of sources usual words.
 Pages of papers have no measured numbers:
 those stand on pages that the program writes. The table of features has a sign of
 each suite. The baseline of CI has all cases of its profile. A source that a page or
@@ -19,7 +19,7 @@ import subprocess
 import sys
 
 from documented import commands, pages
-from literals import printed
+from literals import comments, printed
 
 PROGRAM, SOURCES = sys.argv[1:3]
 LINES_OF_README = 150
@@ -110,8 +110,9 @@ PLAIN = {"README.md", "CONTRIBUTING.md", *(f"docs/{name}.md" for name in (
 LONGEST_SENTENCE = 35  # words
 # What these say has a usual word: next to, running, saves, resumes, prints, ...
 UNUSUAL = re.compile(
-    r"\b(besides?|whoever|nobody|under way|anew|all else|one's own|lays? down|"
-    r"(?:takes?|taken|took) up|c[ao]mes? to|goe?s? by|hangs? on|goe?s? along|"
+    r"\b(besides?(?!\()|whoever|nobody|under way|anew|all else|one's own|"
+    r"lays? down|(?:takes?|taken|took) up|c[ao]mes? to(?! rest)|goe?s? by|"
+    r"hangs? on|goe?s? along(?! the)|"
     r"all the same|stands? (?:in|at|apart|below|on|beside)|held against|"
     r"(?:is|are) told|tells|holds? (?:it|them )?against)\b", re.I)
 
@@ -124,12 +125,16 @@ def prose(text):
             yield re.sub(r"\]\([^)]*\)|`[^`]*`", "x", " ".join(block.split()))
 
 
+def unusual_words(name, words, unusual):
+    for found in unusual.finditer(words):
+        yield (f"{name}: '{found[0]}' in "
+               f"'{words[max(0, found.start() - 30):found.end() + 30]}'")
+
+
 def not_plain(name, text, unusual=UNUSUAL):
     """Words that have a usual one, and sentences that are too long."""
     for words in prose(text):
-        for found in unusual.finditer(words):
-            yield (f"{name}: '{found[0]}' in "
-                   f"'{words[max(0, found.start() - 30):found.end() + 30]}'")
+        yield from unusual_words(name, words, unusual)
         for sentence in re.split(r"(?<=[.!?:;])\s+", words):
             count = len(sentence.split())
             if count > LONGEST_SENTENCE:
@@ -151,8 +156,7 @@ def help_not_plain():
 
 # The same of texts in sources: is not a, known values, expected, continues, ...
 UNUSUAL_PRINTED = re.compile(
-    UNUSUAL.pattern.replace("c[ao]mes? to", "c[ao]mes? to(?! rest)") +
-    r"|(?<!there )\bis no\b(?! longer)|\b(?:known|nearest) are\b|"
+    UNUSUAL.pattern + r"|(?<!there )\bis no\b(?! longer)|\b(?:known|nearest) are\b|"
     r"\b(?:is|are) right\b|\blaid\b|\bstands?\b (?:twice|still|for)|"
     r"\bgo(?:es|ing)? on\b|\bwant of\b|\bmakes? up for\b|\basked? for\b|"
     r"\bof (?:its|their) own\b|\bnumbers? from \d+ on\b|\bis of\b", re.I)
@@ -171,6 +175,20 @@ def not_plainly_printed():
             yield from not_plain(place, words, UNUSUAL_PRINTED)
     if count < 1000:
         yield f"only {count} texts found in the sources"
+
+
+# The same of comments, whose sentences may be long: continues, saves, says, ...
+UNUSUAL_IN_COMMENTS = re.compile(
+    UNUSUAL.pattern + r"|\bgo(?:es|ing)? on\b|\blaid\b(?! out)", re.I)
+
+
+def comments_not_plain():
+    count = 0
+    for place, words in comments(SOURCES):
+        count += 1
+        yield from unusual_words(place, words, UNUSUAL_IN_COMMENTS)
+    if count < 1000:
+        yield f"only {count} comments found in the sources"
 
 
 SUITES = 17
@@ -301,7 +319,7 @@ def unexplained():
 def main():
     wrong = [*wrong_counts(), *wrong_verdicts(), *unexplained(), *features(),
              *baseline(), *lost_in_comments(), *help_not_plain(),
-             *not_plainly_printed()]
+             *not_plainly_printed(), *comments_not_plain()]
     lines = read("README.md").count("\n")
     if lines > LINES_OF_README:
         wrong.append(f"README.md has {lines} lines, of {LINES_OF_README}")

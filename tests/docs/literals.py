@@ -1,4 +1,4 @@
-"""Texts that C++ sources print: runs of adjacent string literals."""
+"""Texts of C++ sources: what they print, runs of adjacent literals, and comments."""
 
 import os
 import re
@@ -24,13 +24,41 @@ def literals(text):
                 yield text.count("\n", 0, found.start()) + 1, words
 
 
-def printed(sources):
-    """Place and text of each literal of the sources."""
+def comments_of(text):
+    """First line and text of each comment: lines that follow each other are one."""
+    first, end, words = 0, 0, []
+    for found in TOKEN.finditer(text):
+        if not found[0].startswith("//"):
+            continue
+        line = text.count("\n", 0, found.start()) + 1
+        if words and line != end + 1:
+            yield first, " ".join(words)
+            words = []
+        if not words:
+            first = line
+        words.append(found[0].lstrip("/!<").strip())
+        end = line
+    if words:
+        yield first, " ".join(words)
+
+
+def texts(sources, texts_of):
+    """Place and text of what `texts_of` finds in each file of the sources."""
     for folder in FOLDERS:
         for path, _, names in os.walk(os.path.join(sources, folder)):
             for name in sorted(names):
                 if name.endswith((".h", ".cpp")):
                     file = os.path.join(path, name)
                     with open(file) as f:
-                        for line, words in literals(f.read()):
+                        for line, words in texts_of(f.read()):
                             yield f"{os.path.relpath(file, sources)}:{line}", words
+
+
+def printed(sources):
+    """Place and text of each literal of the sources."""
+    return texts(sources, literals)
+
+
+def comments(sources):
+    """Place and text of each comment of the sources."""
+    return texts(sources, comments_of)
