@@ -2,7 +2,7 @@
 /// tol=gtol)`, run for many independent problems together.
 ///
 /// How it is used: batched_solver.h. A search halves its interval at a loss of
-/// +inf, as SciPy's does. Where SciPy would walk on with NaN, it fails (see
+/// +inf, as SciPy's does. Where SciPy would continue with NaN, it fails (see
 /// line_search.h), or halves as well if the option says so: results are finite
 /// if the start and its loss are.
 #pragma once

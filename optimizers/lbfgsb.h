@@ -7,7 +7,7 @@
 /// (steps/box_step.h); their length is that of More and Thuente.
 ///
 /// A search that fails clears the problem's memory, and ends the problem if it
-/// is empty. A value that is not finite fails a search; lbfgsb.f would walk on
+/// is empty. A value that is not finite fails a search; lbfgsb.f would continue
 /// with NaN.
 #pragma once
 

@@ -44,7 +44,7 @@ struct LocalStepsOptions {
   Index iterations = 10;
   Index paths = 0;  ///< none unless somebody reads them
   NumericInverseOptions search = {};
-  /// Of gradient steps, instead of `rate`; it goes number by number.
+  /// Of gradient steps, instead of `rate`; it works number by number.
   std::optional<StepOptions> rule = {};
 
   auto fields() const {

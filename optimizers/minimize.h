@@ -29,7 +29,7 @@ Outcome minimize(BatchedSolver& solver,
                  const Batch<double>& x0,
                  Precision precision = Precision::f64);
 
-/// Estimates, statuses and counts of a run that has ended, for those who drive
+/// Estimates, statuses and counts of a run that has ended, for code that drives
 /// a solver on another objective. The evaluations that finished problems did
 /// not need are counted as saved, and so are trials of a known end.
 Outcome outcome_of(const BatchedSolver& solver, Oracle& oracle);

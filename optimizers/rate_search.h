@@ -2,11 +2,10 @@
 /// rule the same care.
 ///
 /// Each of the rates trains the network from its start for a share of the
-/// stage's updates, on training data and problems of the search's own, drawn
-/// from a stream of their own that no result is measured on. The rate with the
-/// lowest mean loss at the end wins; one that diverges loses to all that do
-/// not, the smaller of equals wins. Then the stage is `train` at that rate, to
-/// the bit.
+/// stage's updates, on the search's own training data and problems, drawn from
+/// a separate stream that no result is measured on. The rate with the lowest
+/// mean loss at the end wins; one that diverges loses to all that do not, the
+/// smaller of equals wins. Then the stage is `train` at that rate, to the bit.
 ///
 /// The search counts as set-up: its time is on the record's set-up clock, its
 /// calls of the physics are not counted.

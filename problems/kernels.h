@@ -12,7 +12,7 @@
 
 namespace physinv {
 
-/// A problem with n of its own samples and room for whatever is asked of it.
+/// A problem with n of its samples and memory for all of its operations.
 template <class T>
 struct KernelFixture {
   KernelFixture(const ProblemRecipe& recipe, Index n) : problem(recipe) {

@@ -19,7 +19,7 @@ nlohmann::ordered_json digest_json(const std::vector<Section>& sections,
                                    const nlohmann::ordered_json& provenance);
 
 /// What a digest's pages show: claims and tables. There are no figures;
-/// std::runtime_error if it is no digest.
+/// std::runtime_error if it is not a digest.
 std::vector<Section> sections_of(const nlohmann::ordered_json& digest);
 
 /// The papers' figures in a campaign as SVG files, by the name that the digest

@@ -10,7 +10,8 @@
 namespace physinv {
 
 nlohmann::ordered_json table_json(const Table& table);
-/// Throws a JSON error or std::runtime_error if it is no table. It has no id.
+/// Throws a JSON error or std::runtime_error if it is not a table. It has no
+/// id.
 Table table_from(const nlohmann::ordered_json& table);
 
 }  // namespace physinv

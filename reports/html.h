@@ -15,8 +15,8 @@
 namespace physinv {
 
 /// All of it as one page. Same sections and provenance, same bytes. Ids of
-/// claims, tables and figures are <experiment>-<id> with '-' for what is no
-/// letter or digit; a number follows where that would repeat.
+/// claims, tables and figures are <experiment>-<id> with '-' for all but
+/// letters and digits; a number follows where that would repeat.
 std::string report_html(const std::vector<Section>& sections,
                         const nlohmann::ordered_json& provenance);
 

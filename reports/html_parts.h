@@ -113,7 +113,7 @@ std::string section_html(const Section& section,
 std::string command_of(const Section& section,
                        const nlohmann::ordered_json& provenance);
 
-/// Panels as in the SVG file, each a drawing of its own so that they flow on
+/// Panels as in the SVG file, each a separate drawing so that they flow on
 /// narrow screens; title, legend and note are HTML.
 std::string figure_html(const Figure& figure,
                         const std::string& id,

@@ -33,8 +33,8 @@ class Writer {
     files_.push_back(folder_.path() / name);
   }
 
-  /// What waits goes to the disk, a folder at a time: hundreds of small files
-  /// would take as many syncs.
+  /// What waits is synced to the disk, a folder at a time: hundreds of small
+  /// files would take as many syncs.
   void flush() {
     for (const auto& [place, files] : pending_) {
       std::optional<Folder> below;

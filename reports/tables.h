@@ -17,11 +17,11 @@ const Cell& cell_at(const TableRow& row, std::size_t column);
 /// not finite, `text` only where a cell has one.
 nlohmann::ordered_json to_json(const Table& table);
 
-/// Tidy: the keys of a row in columns of their own (`Table::keys`, else the
-/// corner; `Table::across`), one value a cell, the unit in the head, numbers
-/// with every digit, empty where there is none. A column has others next to it
-/// where any row has that: "spread", "paper", "paper spread", "of" and, for
-/// words in the place of a number, "note".
+/// Tidy: the keys of a row in separate columns (`Table::keys`, else the corner;
+/// `Table::across`), one value a cell, the unit in the head, numbers with every
+/// digit, empty where there is none. A column has others next to it where any
+/// row has that: "spread", "paper", "paper spread", "of" and, for words in the
+/// place of a number, "note".
 std::string to_csv(const Table& table);
 
 /// A figure's points, a line each: panel, series, x, y and the ends of its

@@ -12,7 +12,7 @@ namespace physinv {
 using Writing = std::string (*)(std::string_view text);
 
 /// "Work: 49 simulations. Saved: 7 encodings of inputs. Given up: .. Not
-/// counted: `skipped_terms`." What a campaign of before did not count is no 0.
+/// counted: `skipped_terms`." What an earlier campaign did not count is not 0.
 std::string work_text(const Counts& counts, Writing words, Writing code);
 
 }  // namespace physinv

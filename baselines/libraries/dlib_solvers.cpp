@@ -26,7 +26,7 @@ struct Function {
   Column gradient(const Column& x) const { return loss(x), slope; }
 };
 
-/// dlib's test, and what it said; copies share it.
+/// dlib's test, and its answer; copies share it.
 struct Test {
   Objective& objective;
   dlib::objective_delta_stop_strategy changes;

@@ -1,6 +1,5 @@
-/// A function on a stack of its own that can wait in the midst of a call, so
-/// that a library's minimizer, which calls its objective, becomes one that asks
-/// for evaluations.
+/// A function on its own stack that can wait within a call, so that a library's
+/// minimizer, which calls its objective, becomes one that asks for evaluations.
 ///
 ///   Fiber fiber([&](Fiber& self) { ...; self.suspend(); ...; });
 ///   while (!fiber.done()) fiber.resume();

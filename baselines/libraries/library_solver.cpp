@@ -55,7 +55,7 @@ bool same(const double* a, const double* b, Index d) {
 
 }  // namespace
 
-/// One problem: what its library asked for last, and what it was told.
+/// One problem: what its library asked for last, and what it got.
 struct LibrarySolver::Run final : Objective {
   struct Known {
     Vector<double> x;

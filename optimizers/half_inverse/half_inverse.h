@@ -33,7 +33,7 @@ struct HalfInverseReport : PowerReport {
   Path path = Path::gram;
   bool proven = false;  ///< error <= tolerance
   Index abandoned = 0;  ///< decompositions made for it and given up
-  bool spared = false;  ///< proven, so that a next path was not gone
+  bool spared = false;  ///< proven, so that no further path was tried
 };
 
 class HalfInverse {

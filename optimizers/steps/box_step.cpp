@@ -199,7 +199,7 @@ void BoxStep::back_into_box(const double* x, const double* g, double* z) {
   for (Index i = 0; i < d; ++i) {
     const double step = newton_(i);
     const double bound = step > 0 ? box_->upper(i) : box_->lower(i);
-    // Who stops the step arrives at its bound to the last bit.
+    // The unknown that stops the step arrives at its bound to the last bit.
     const bool stops = alpha < 1 && step != 0 && (bound - z[i]) / step == alpha;
     z[i] = stops ? bound : std::fma(alpha, step, z[i]);
   }

@@ -6,7 +6,7 @@
 /// fails, search 2 (Nocedal & Wright, algorithms 3.5 and 3.6: bracket, then
 /// zoom) starts again from the first trial step, as in SciPy 1.10. Values that
 /// are not finite fail search 1. In search 2 a loss of +inf is above any limit,
-/// as in SciPy, so that the interval is halved; SciPy would walk on with NaN,
+/// as in SciPy, so that the interval is halved; SciPy would continue with NaN,
 /// which here ends search 2 with `nonfinite`, or counts as +inf (`back_off`).
 #pragma once
 

@@ -51,12 +51,12 @@ class Batches {
     return target_.middleCols(first_ + first, count);
   }
 
-  /// The solutions, for those who had them kept.
+  /// The solutions, if they were kept.
   auto label(Index first, Index count) const {
     return label_.middleCols(first_ + first, count);
   }
 
-  /// The observations before they were rounded, for those who had them kept.
+  /// The observations before they were rounded, if they were kept.
   auto exact_target(Index first, Index count) const {
     return exact_target_.middleCols(first_ + first, count);
   }

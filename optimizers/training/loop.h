@@ -4,7 +4,7 @@
 ///
 /// Labelled regression, joint optimization through a solver, minibatches with
 /// half-inverse gradients are settings of it: which signal pushes the network,
-/// which rule makes an update of that, which samples take part, and who makes
+/// which rule makes an update of that, which samples take part, and what makes
 /// the estimates of the case's own problems.
 #pragma once
 

@@ -330,7 +330,7 @@ class Billiards final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
       P g[2], out[2] = {};
       if (any(mask[b])) {
         Lanes<T>(g, 2).load(y_bar, b * kLanes<T>);
-        // A miss ignores its cotangent, were it infinite: 0 * inf is no 0.
+        // A miss ignores its cotangent, were it infinite: 0 * inf is not 0.
         for (P& row : g) row = select(mask[b], row, P{});
         out[0] = fma_lanes(j[0], g[0], j[1] * g[1]);
         out[1] = fma_lanes(j[2], g[0], j[3] * g[1]);

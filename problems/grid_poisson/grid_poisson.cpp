@@ -68,8 +68,8 @@ template <class T>
   }
 }
 
-/// 0, or NaN if some entry is not finite: L knows no point, but a derivative
-/// taken at such a point must say so.
+/// 0, or NaN if some entry is not finite: L does not depend on the point, but a
+/// derivative taken at such a point must say so.
 template <class T>
 T poison(const T* x) {
   T sums[kSide] = {};

@@ -19,8 +19,8 @@ using namespace heat_lanes;
 
 enum Slot : std::size_t { kPoison, kScratch };
 
-/// 0, or NaN if some entry is not finite: P knows no point, but a derivative
-/// taken at such a point must say so.
+/// 0, or NaN if some entry is not finite: P does not depend on the point, but a
+/// derivative taken at such a point must say so.
 template <class T>
 T poison(const T* x, Index cells) {
   T sum = 0;

@@ -6,8 +6,8 @@
 ///   z[2 p + s][2 q + t],   p, q = 0 .. n/2,
 ///
 /// is part t (real, imaginary) of mode(q) over rows of part s of mode(p) over
-/// columns. So a factor that knows only |k| and |l| multiplies four numbers;
-/// `scale_modes` combines the numbers of one mode.
+/// columns. So a factor that depends only on |k| and |l| multiplies four
+/// numbers; `scale_modes` combines the numbers of one mode.
 #pragma once
 
 #include <array>

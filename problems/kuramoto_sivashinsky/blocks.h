@@ -32,7 +32,7 @@ struct Block : SampleBlock {
       out(r) = in[at / K::kSide][sample * K::kSide + at % K::kSide];
     }
   }
-  /// Last states go out, as NaN unless all of one is finite.
+  /// Last states are written, as NaN unless all of one is finite.
   void finish(const P* u, BatchOut<T>& y) const {
     for (Index sample = 0; sample < count; ++sample) {
       auto column = y.col(first + sample);

@@ -116,7 +116,7 @@ struct Etdrk2Kernels {
   std::optional<Etdrk2<T, FoursFft<T>>> fours;
 };
 
-/// How many samples go together, of so many: as many as have four lanes each,
+/// How many samples run together, of so many: as many as have four lanes each,
 /// in at most two packs, or a register of them.
 template <class T>
 Index samples_together(const Etdrk2Kernels<T>& k, Index samples) {

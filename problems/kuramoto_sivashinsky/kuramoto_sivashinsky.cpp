@@ -153,7 +153,7 @@ class KuramotoSivashinsky final : public Problem<T>,
           k.begin(r, u);
           Index end = steps;
           if (count_set(r.beta == P{}) == block.kWidth) {
-            // Linear: the modes go their own ways.
+            // Linear: the modes are independent.
             for (Index t = 0; t < steps; ++t) k.drift(r);
             k.restore(r, state(end));
             terms += static_cast<std::uint64_t>(2 * steps * block.count);

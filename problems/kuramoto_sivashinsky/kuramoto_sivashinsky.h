@@ -27,12 +27,12 @@
 /// advection; steps that are simulated again count once.
 ///
 /// Speed: a register of samples at a time (LanesFft), which ends with its last
-/// sample; of samples that fill half of one at most, four points of each go
-/// side by side (FoursFft), to the same bits. The spectrum of u is the
-/// state (etdrk2.h): a step forward takes four real transforms, and so does a
-/// step back. For 128 cells and samples a step takes 0.20 us per sample in
-/// double and 0.10 us in float with AVX-512 (FFTW, one sample at a time: 0.51
-/// and 0.47), with its gradient 0.62 and 0.31 us (1.5 and 1.4); a single sample
+/// sample; of samples that fill half of one at most, four points of each are
+/// side by side (FoursFft), to the same bits. The spectrum of u is the state
+/// (etdrk2.h): a step forward takes four real transforms, and so does a step
+/// back. For 128 cells and samples a step takes 0.20 us per sample in double
+/// and 0.10 us in float with AVX-512 (FFTW, one sample at a time: 0.51 and
+/// 0.47), with its gradient 0.62 and 0.31 us (1.5 and 1.4); a single sample
 /// takes 0.41 and 0.36 us a step, with its gradient 0.81 and 0.75.
 #pragma once
 

@@ -327,7 +327,7 @@ class QuantumDipole final : public Problem<T>,
       } else {
         auto wide = own.take<double>(u.rows(), some);
         auto exact = own.take<double>(j.rows(), some);
-        // As forward, which knows no number where the square overflows.
+        // As forward, which gives NaN where the square overflows.
         wide = u.unaryExpr([](T v) {
                   return std::isfinite(v * v) ? v : v * v;
                 }).template cast<double>();

@@ -51,7 +51,7 @@ struct QuantumDipoleOptions {
   /// Controls of the start and of labelled samples are N(0, deviation^2):
   /// without any control the third eigenstate is out of reach.
   double deviation = 0.08;
-  /// start() is no control at all: for networks whose output is the control.
+  /// start() is zero control: for networks whose output is the control.
   bool zero_start = false;
   /// Angles of the first targets, (f1, f2) = (cos, sin); the rest is drawn.
   std::vector<double> angles = {};

@@ -21,8 +21,8 @@ using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
 template <class T>
 using View = Eigen::Map<const Batch<T>>;
 
-/// An array of numbers for an argument that is no plain array of T. Complex and
-/// masked arrays are none: what would be dropped is a TypeError.
+/// An array of numbers for an argument that is not a plain array of T. Complex
+/// and masked arrays are none: what would be dropped is a TypeError.
 inline py::array numbers(const py::object& argument, std::string_view name) {
   const py::object masked =
       py::module_::import("numpy").attr("ma").attr("MaskedArray");
@@ -55,7 +55,7 @@ Array<T> taken(const py::object& argument, std::string_view name) {
   return array;
 }
 
-/// ValueError for what is no (samples, features) of these sizes.
+/// ValueError for what is not (samples, features) of these sizes.
 template <class T>
 View<T> view(const Array<T>& array,
              std::string_view name,

@@ -316,8 +316,8 @@ std::string problem_sources() {
 
 bool running = false, forked = false;
 
-/// A worker is a fork, and Python is to know, and OpenMP, whose threads a child
-/// has not.
+/// A worker is a fork: Python must be notified, and OpenMP, whose threads a
+/// child does not have.
 void before_fork() {
   if (!running) return;
   try {
@@ -344,7 +344,7 @@ const Verb& verb_named(const std::string& name) {
   throw py::value_error("there is no verb '" + name + "'");
 }
 
-/// Status and last words of a verb, in this process, which knows the methods.
+/// Status and last words of a verb, in this process, which has the methods.
 py::tuple call(const std::string& name, const Arguments& arguments) {
   static const int kRegistered =
       pthread_atfork(before_fork, after_fork_here, after_fork_there);

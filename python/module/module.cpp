@@ -15,7 +15,7 @@
 
 namespace {
 
-/// pybind11 knows the layout of NumPy 2 from 2.12 on.
+/// pybind11 supports the layout of NumPy 2 from version 2.12.
 void check_numpy() {
   const auto version = pybind11::module_::import("numpy")
                            .attr("__version__")

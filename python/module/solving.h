@@ -42,7 +42,7 @@ class Solving {
   /// was accepted, and losses that were asked for, with gradients and without.
   Vector<double> counted_iterations() const;
   Vector<double> counted_evaluations() const { return evaluations_; }
-  /// Closes the curve. Throws if the method told nothing.
+  /// Closes the curve. Throws if the method reported nothing.
   void finish();
   /// Nothing is seen from here on.
   void end() { run_ = nullptr; }

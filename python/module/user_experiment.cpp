@@ -17,7 +17,7 @@ namespace {
 
 /// Of each experiment, what returns the words that its key has of the problem.
 std::map<std::string, py::function>& words_of_problems() {
-  // Not torn down at exit, when Python is gone.
+  // Not destroyed at exit, when Python has ended.
   static auto& all = *new std::map<std::string, py::function>;
   return all;
 }

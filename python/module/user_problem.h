@@ -38,7 +38,7 @@ struct Functions {
   }
 };
 
-/// Takes the lock of the interpreter when they go.
+/// Takes the lock of the interpreter when they are destroyed.
 std::shared_ptr<const Functions> shared(Functions functions);
 
 ProblemRecipe recipe_of(const std::shared_ptr<const Functions>& functions,

@@ -43,7 +43,7 @@ Chosen chosen_of(const nlohmann::json& plan, const std::string& directory) {
           .sets = options.value("set", std::vector<std::string>())};
 }
 
-/// Plug-ins and methods in Python are known to who has them.
+/// Only users who have the plug-ins and methods in Python know them.
 void check_known(const Results& results) {
   for (const CaseRecord& c : results.cases()) {
     const auto e = registry().find(c.info.experiment);

@@ -45,7 +45,7 @@ void touch(const std::string& file) {
   if (fd >= 0) close(fd);
 }
 
-/// GoogleTest's protocol: who reads the variables says so by this file.
+/// GoogleTest's protocol: a program that reads the variables creates this file.
 std::string shard_of_environment() {
   const std::string total = variable("GTEST_TOTAL_SHARDS"),
                     index = variable("GTEST_SHARD_INDEX");

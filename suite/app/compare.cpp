@@ -149,7 +149,7 @@ std::string json_text(const nlohmann::ordered_json& json) {
       1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-/// Of claims, those that both sides judge; how many only one does is said.
+/// Of claims, those that both sides judge; prints how many only one does.
 void print_counts(const Comparison& own,
                   const std::vector<ChangedClaim>& changed,
                   std::size_t judged) {

@@ -12,7 +12,7 @@ namespace physinv {
 
 struct RunEnd {
   std::string out;      ///< the store
-  Selection selection;  ///< its filters are regular expressions by now
+  Selection selection;  ///< its filters are already regular expressions
   std::set<std::string> experiments;  ///< that the run was about
   int jobs = 1;
   Screen screen;

@@ -1,7 +1,7 @@
 // physinv-count [--perf] PROFILE CASE...: runs cases, here and on one thread,
 // for programs that count the instructions of `physinv_counted`: callgrind from
 // outside, or with --perf this program, which prints them. It is built for
-// x86-64-v3, as valgrind knows no AVX-512.
+// x86-64-v3, as valgrind does not support AVX-512.
 #include <fmt/format.h>
 #include <linux/perf_event.h>
 #include <sys/syscall.h>

@@ -105,8 +105,8 @@ std::string objection(const Flag& flag,
   return "";
 }
 
-/// The file of --config as CLI11 asks for it. What it holds is checked as the
-/// flags of a command line are, and told with its line.
+/// The file of --config as CLI11 asks for it. Its values are checked like the
+/// flags of a command line; errors name the line.
 class CampaignFile final : public CLI::ConfigBase {
  public:
   CampaignFile(std::string path, const std::vector<Flag>& flags)

@@ -104,8 +104,9 @@ class AgainstBaseline {
       report.findings.push_back(judge(lines[i], counts_.lines[i]));
   }
 
-  /// The new lines in the place of the old ones; what is gone goes. Counts that
-  /// were not made again, as on another processor, stay with their build.
+  /// The new lines in the place of the old ones; lines of stages that are gone
+  /// are removed. Counts that were not made again, as on another processor,
+  /// stay with their build.
   void renew() {
     measure_digits(now_, cases_, flags_.measuring(), Screen::of(stdout));
     Baseline renewed = blank_baseline(before_.chosen);
@@ -159,7 +160,7 @@ class AgainstBaseline {
                                 near.empty() ? names.front() : near.front()));
   }
 
-  /// Of cases that are gone, their stages tell.
+  /// Without the lines of cases that are gone, whose stages are reported.
   std::vector<CountLine> countable() const {
     const auto known = names_of(cases_);
     auto lines = matching(before_.counts.lines, filter_);

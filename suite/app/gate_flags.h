@@ -24,8 +24,8 @@ struct GateFlags {
   MeasureOptions measuring() const;
 };
 
-/// The registered cases of a baseline that match `filters`, too. `whose` its
-/// own filters are is said where one is wrong.
+/// The registered cases of a baseline that match `filters`, too. An error in
+/// its own filters says `whose` they are.
 std::vector<Case> cases_of(const Chosen& chosen,
                            const std::vector<std::string>& filters = {},
                            const std::string& whose = "the campaign's filter");

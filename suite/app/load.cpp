@@ -14,7 +14,7 @@ Loaded load(const std::string& directory, std::FILE* warnings) {
   Loaded loaded{.catalog = Catalog::read(results_directory(directory))};
   auto cases = checked_cases(loaded.catalog);
   loaded.lacks = missing_work(loaded.catalog, cases);
-  // What lacks is said at the end, in the one line of an error.
+  // What is missing is printed at the end, in the one line of an error.
   if (warnings == stdout || !loaded.lacks.any())
     for (const auto& warning : loaded.catalog.warnings())
       fmt::print(warnings, "warning: {}\n", warning);

@@ -8,8 +8,8 @@ namespace physinv {
 
 /// Loads what PHYSINV_PLUGINS names (with colons) and what flags --plugin=FILE
 /// do, which are taken out of the arguments. Programs that this one starts find
-/// them in PHYSINV_PLUGINS. UsageError for what is no plug-in, is of another
-/// build or registers a name that is there.
+/// them in PHYSINV_PLUGINS. UsageError for a file that is not a plug-in, is of
+/// another build or registers a name that is there.
 void load_plugins(Arguments& arguments);
 
 }  // namespace physinv

@@ -81,7 +81,7 @@ Results planned(const std::string& profile) {
   return Results(std::move(cases));
 }
 
-/// Tables of a paper's own section that its campaign did not know yet, by what
+/// Tables of a paper's own section that its campaign did not have yet, by what
 /// results.json keeps.
 void add_tables(const std::string& paper,
                 const Results& stages,
@@ -96,8 +96,8 @@ void add_tables(const std::string& paper,
 
 /// A digest keeps the numbers of its conditions: each claim is judged by what
 /// is registered now, and has the cause that it states now. One that the
-/// campaign did not know yet waits for a run.
-/// `stages` are what results.json keeps.
+/// campaign did not have yet waits for a run. `stages` are what results.json
+/// keeps.
 void renew(Json& digest, const Results& stages, const Published& published) {
   const Results plan = planned(digest.at("provenance").value("profile", ""));
   for (auto& section : digest.at("sections")) {

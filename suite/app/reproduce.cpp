@@ -92,7 +92,8 @@ void count_keys(const CaseRecord& stored,
   }
 }
 
-/// Leaves out cases that no profile has by now, and counts keys of the others.
+/// Leaves out cases that no profile has any more, and counts keys of the
+/// others.
 void match_with_registered(const Results& results, Again& again) {
   std::map<std::string_view, const CaseRecord*> stored;
   for (const CaseRecord& c : results.cases()) stored[c.info.name] = &c;

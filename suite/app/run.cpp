@@ -271,7 +271,7 @@ std::string begin_text(const RunFlags& flags, const std::vector<Case>& cases) {
 }
 
 /// With keys only where something may be reused: the data of experiments that
-/// the store does not know are not drawn.
+/// the store does not have are not drawn.
 Prepared prepared_to_look(std::vector<Case> cases, const CampaignOptions& o) {
   std::set<std::string> known;
   if (const auto stored = reusable(o))

@@ -72,7 +72,7 @@ void follow_budget(CampaignOptions& campaign,
   const double pages =
       use.pages ? kPageSeconds * static_cast<double>(cases.size()) : 0;
   const Seconds spent = now() - use.begun;
-  // Who shares the cores ends later.
+  // A run that shares its cores ends later.
   const double shared = std::max(1.0, spent.wall / std::max(spent.cpu, 1e-3));
   const double ending = std::min(shared * (kEndingSeconds + pages),
                                  kMostOfBudget * campaign.time_budget);

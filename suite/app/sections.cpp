@@ -92,7 +92,7 @@ bool only_diagnoses(const Experiment& e) {
 }
 
 /// CPU of all stages and, of that, what went to curves, metrics and final
-/// losses. Writing them down is no part of it.
+/// losses. Writing them is not part of it.
 void add_cpu(const Results& results, nlohmann::ordered_json& picked) {
   double stages = 0, evaluation = 0;
   for (const CaseRecord& c : results.cases()) {

@@ -22,9 +22,9 @@ struct SideRank {
   bool better() const { return test.down; }
 };
 
-/// Those that differ most surely first. Who failed, on either side, has no
-/// loss, which counts as the highest; stages with other numbers of losses, or
-/// that failed on both sides, have no pairs.
+/// Those that differ most surely first. A run that failed, on either side, has
+/// no loss, which counts as the highest; stages with other numbers of losses,
+/// or that failed on both sides, have no pairs.
 std::vector<SideRank> side_ranks(const std::vector<Side>& sides);
 
 /// Of these the first `most`.

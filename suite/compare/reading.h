@@ -66,7 +66,7 @@ inline double percent_of(Index part, Index whole) {
 
 /// From where a difference counts.
 struct Thresholds {
-  double factor = 1.5;  ///< a ratio of times within it is no change
+  double factor = 1.5;  ///< a ratio of times within it is not a change
   double solved =
       kSolvedByDefault;  ///< an example with a loss of at most this is solved
 };
@@ -88,18 +88,18 @@ std::string end_text(const Reading& from, const Reading& to);
 double loss_ratio(const Reading& a, const Reading& b);
 
 /// Costs, time and work, compare between stages that both converged or ran
-/// their iterations, with as many losses that are finite: who fails, is skipped
-/// or diverges spends less and gains nothing.
+/// their iterations, with as many losses that are finite: a stage that fails,
+/// is skipped or diverges spends less and gains nothing.
 bool costs_compare(const Reading& a, const Reading& b);
 
 /// Of two stages whose costs compare. CPU times are compared where both are of
-/// one core; else wall time, unless one of both was crowded.
+/// one core; else wall times, unless one of the two was crowded.
 struct TimeRatio {
   std::optional<double> value;  ///< b over a
   std::string why;              ///< there is none: "failed", "crowded", ...
   bool compares = false;        ///< `a` and `b` hold what is compared, seconds
   Quartiles a, b;
-  /// One of both should have a time, and its clock has no number.
+  /// One of the two should have a time, and its clock has no number.
   bool a_unknown = false, b_unknown = false;
 };
 TimeRatio time_ratio(const Reading& a, const Reading& b);

@@ -52,7 +52,7 @@ std::optional<Worse> worse_end(const Reading& a, const Reading& b) {
   return Worse{static_cast<double>(b.ends.begin()->first), end_text(a, b)};
 }
 
-/// Who ends worse and so has no cost got no better.
+/// A stage that ends worse has no cost, which is not better.
 std::optional<Worse> lost_cost(const Reading& a, const Reading& b) {
   return costs_compare(a, b) ? std::nullopt : worse_end(a, b);
 }

@@ -34,8 +34,8 @@ std::optional<Regression> regression(Aspect aspect,
                                      const std::vector<ChangedClaim>& claims,
                                      double factor);
 
-/// How pairs ended, and how many have times that compare: one line, for who
-/// reads that nothing got worse.
+/// How pairs ended, and how many have times that compare: one line, for readers
+/// of "nothing got worse".
 std::string pairs_text(const Comparison& comparison);
 
 }  // namespace physinv

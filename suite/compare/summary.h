@@ -37,9 +37,9 @@ Table method_table(const std::vector<MethodChange>& changes,
                    const Comparison& comparison,
                    std::size_t most);
 
-/// Who changed and how: "b against a: higher losses: supervised (on 57 % of 336
-/// problems, p = 0.001); slower: jpo (×2.2); 3 of 5 methods unchanged", one for
-/// each side after the first.
+/// Which methods changed and how: "b against a: higher losses: supervised (on
+/// 57 % of 336 problems, p = 0.001); slower: jpo (×2.2); 3 of 5 methods
+/// unchanged", one for each side after the first.
 std::vector<std::string> summary_sentences(
     const std::vector<MethodChange>& changes, const Comparison& comparison);
 

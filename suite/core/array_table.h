@@ -86,7 +86,7 @@ inline constexpr ArrayInfo kArrays[] = {
      "relative error of the state in float"},
 
     // Sweeps (suite/diagnostics/stability_sweep.h, work_precision.h): -1 where
-    // an error is no number.
+    // an error is not a number.
     {"point", "cells,unknowns", "", "where derivatives were checked"},
     {"status", "cells,checks", "1", "what each check found", "point"},
     {"error", "cells,checks", "1", "of each check, relative", "point"},

@@ -1,4 +1,4 @@
-/// Steps to a target that a problem knows in closed form, the limits included
+/// Steps to a target that a problem has in closed form, the limits included
 /// where a matrix is singular or its entries leave the range of numbers.
 #pragma once
 

@@ -86,7 +86,7 @@ class Counts {
   void forget(Counter c) { forgotten_ |= bit(c); }
   bool knows(Counter c) const { return (forgotten_ & bit(c)) == 0; }
 
-  /// What one of them does not know, the sum does not.
+  /// What one of them does not have, the sum does not.
   Counts& operator+=(const Counts& other) {
     for (std::size_t i = 0; i < kCounters; ++i) values_[i] += other.values_[i];
     forgotten_ |= other.forgotten_;

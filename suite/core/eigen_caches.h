@@ -1,7 +1,7 @@
 /// Eigen cuts products into blocks by the caches that it believes in, and sums
-/// block by block; unless told, it asks the processor. These are stated for
-/// everybody. Who records what Eigen has summed over long rows calls this
-/// first: the program around may have told Eigen others.
+/// block by block; without given sizes it asks the processor. These are the
+/// same everywhere. Code that records what Eigen has summed over long rows
+/// calls this first: the program around it may have set others.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,6 +1,6 @@
 /// Discrete Fourier transforms of real signals side by side, one signal per
 /// lane: no shuffles, and bits that depend on no processor and no neighbour.
-/// Of few signals, four points of each go side by side (fours_fft.h).
+/// Of few signals, four points of each are side by side (fours_fft.h).
 ///
 /// Real signals of n = 2 M points are complex ones of M, z_j = u_2j + i u_2j+1
 /// (radix 4, decimated in frequency on the way there and in time on the way
@@ -21,7 +21,7 @@ class FoursFft;
 template <class T>
 class LanesFft {
  public:
-  /// Numbers of a signal that go side by side in a pack.
+  /// Numbers of a signal that are side by side in a pack.
   static constexpr Index kSide = 1;
 
   /// `size` is a power of two, at least 4.

@@ -45,7 +45,7 @@ template <std::size_t N>
 struct Listed {
   static constexpr std::size_t kMembers = N;
   Options words;
-  bool at_default = true;  ///< said even if it is what it is by default
+  bool at_default = true;  ///< written even at its default
 };
 
 template <class O>
@@ -126,7 +126,7 @@ requires(sizeof...(T) > 1) Listed<sizeof...(T)> field(std::string_view name,
   return {.words = {{std::string(name), joined({text_of(each)...})}}};
 }
 
-/// Members in words of their own; without members, a constant.
+/// Members as this text; without members, a constant.
 template <class... T>
 Listed<sizeof...(T)> word(std::string_view name,
                           std::string_view text,
@@ -134,14 +134,14 @@ Listed<sizeof...(T)> word(std::string_view name,
   return {.words = {{std::string(name), std::string(text)}}};
 }
 
-/// Not said where it is what it is by default.
+/// Not written at its default.
 template <std::size_t N>
 Listed<N> if_changed(Listed<N> listed) {
   listed.at_default = false;
   return listed;
 }
 
-/// Said only where it decides something.
+/// Written only where it decides something.
 template <std::size_t N>
 Listed<N> only_if(bool decides, Listed<N> listed) {
   if (!decides) listed.words.clear();

@@ -1,5 +1,5 @@
 /// The problems of one case as a method may see them: shapes checked, calls
-/// counted, true solutions hidden, labels only for those who asked.
+/// counted, true solutions hidden, labels only for methods that asked.
 #pragma once
 
 #include <memory>
@@ -60,8 +60,8 @@ class Oracle {
   /// solutions: for methods that learn from the physics.
   Samples<double> training(Index first, Index count) const;
 
-  /// The problem in the precision T, to be run anywhere and on any data. Who
-  /// runs it adds its counts.
+  /// The problem in the precision T, to be run anywhere and on any data. The
+  /// caller adds its counts.
   template <class T>
   CountedProblem<T> problem() const;
   /// Was that, or a sibling, asked for? Then `counts` lacks what was not added

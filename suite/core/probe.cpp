@@ -107,7 +107,7 @@ void Probe::accept(Index example,
   Index& reached = reached_[static_cast<std::size_t>(example)];
   std::copy_n(x, x_.rows(), x_.col(example).data());
   loss_(example) = loss;
-  measured_ = false;  // but told
+  measured_ = false;  // but given by the caller
   iteration_ = std::max(iteration_, iteration);
   if (iteration >= next_) {
     const Aside aside = measuring();

@@ -130,10 +130,10 @@ class Probe {
   /// The losses of x, if they are what was measured last.
   bool knows_losses(BatchIn<double> x, VectorOut<double> loss) const;
   Clocks clocks() const;
-  /// Not of solvers that go example by example.
+  /// Not of solvers that run example by example.
   void serialize(Archive& archive);
 
-  /// Told of every point of the curve, the clock stopped meanwhile.
+  /// Called at every point of the curve, the clock stopped meanwhile.
   using Observer = std::function<void(Index iteration, VectorIn<double> loss)>;
   void set_observer(Observer observer) { observer_ = std::move(observer); }
 

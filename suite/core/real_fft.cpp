@@ -112,7 +112,7 @@ RealFft<T>::RealFft(Index size, Index count, Codelets codelets)
 template <class T>
 void RealFft<T>::forward(const T* u, T* y) const {
   check_aligned(u, y);
-  // FFTW knows no const; transforms from reals keep their input.
+  // FFTW's interface has no const; transforms from reals keep their input.
   Fftw<T>::forward(plans_->forward, const_cast<T*>(u), complex(y));
 }
 

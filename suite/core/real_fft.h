@@ -1,6 +1,7 @@
 /// Discrete Fourier transforms of real signals of any size, by FFTW: what tests
-/// and kernels hold the suite's own transforms against. Who links it (target
-/// physinv_fftw) is under the GPL as a whole; no program that runs cases does.
+/// and kernels compare the suite's own transforms with. A program that links it
+/// (target physinv_fftw) is under the GPL as a whole; no program that runs
+/// cases does.
 ///
 /// Plans are made once per process and size with FFTW_ESTIMATE, which times
 /// nothing, and run on arrays of one alignment: the bits of a transform depend

@@ -75,7 +75,7 @@ struct Threads::Pool {
   void* body = nullptr;
   std::mutex mutex;
   std::exception_ptr error;
-  Waiting waiting;  // of the one who runs
+  Waiting waiting;  // of the thread that starts the work
 
   ~Pool() {
     stop = true;
@@ -123,7 +123,7 @@ struct Threads::Pool {
     }
   }
 
-  /// Who comes too late is not waited for.
+  /// A thread that comes too late is not waited for.
   bool enter() {
     int now = inside.load();
     while ((now & kClosed) == 0)

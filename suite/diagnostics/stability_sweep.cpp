@@ -58,7 +58,7 @@ Side evaluate(const ProblemRecipe& recipe,
 
 /// d(k, j): central difference of w . F along v with the k-th step. Far from
 /// the origin the points move by whole units of rounding only: what x_bar says
-/// about the part across v is taken out, and a step that misses v is no number.
+/// about the part across v is taken out, and a step that misses v gives NaN.
 Batch<double> central_differences(const Problem<double>& problem,
                                   const Batch<double>& x,
                                   const Batch<double>& given,

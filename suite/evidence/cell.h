@@ -26,8 +26,7 @@ Cell cell_of(std::span<const double> values, const char* otherwise = kNotRun);
 /// Value and spread.
 Cell cell_of(const Measured& measured);
 
-/// The number in words of its own size: fmt's format, "not finite" for what is
-/// not.
+/// The number as text: fmt's format, "not finite" for what is not.
 Cell written(std::optional<double> value,
              const char* format = "{:.3g}",
              const char* otherwise = kNotRun);
@@ -42,7 +41,7 @@ Cell beside_printed(Cell cell,
 /// and how many were crowded or changed their threads.
 class TimedStages {
  public:
-  /// What solving took, if that can be told (suite/results/crowded.h).
+  /// Seconds of solving, if they are known (suite/results/crowded.h).
   std::optional<double> seconds(const StageRecord& stage);
   std::string note() const;
 

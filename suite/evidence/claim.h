@@ -121,8 +121,8 @@ std::string conditions_text(const Claim& claim);
 std::vector<Condition> all_conditions(const Claim& claim);
 
 /// What is wrong with a claim by itself, one line each: no id, a claim of the
-/// paper without a place, no conditions, an unknown profile, a cause that is no
-/// line or counts as holding.
+/// paper without a place, no conditions, an unknown profile, a cause that is
+/// not a line or counts as holding.
 std::vector<std::string> errors_of(const Claim& claim,
                                    const std::vector<std::string>& profiles);
 

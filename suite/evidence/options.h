@@ -8,8 +8,8 @@
 
 namespace physinv {
 
-/// Empty if there is no such option. Throws UnreadableInput if it
-/// is no number.
+/// Empty if there is no such option. Throws UnreadableInput if it is not a
+/// number.
 std::optional<double> number_of(const Options& options, std::string_view name);
 
 }  // namespace physinv

@@ -19,7 +19,7 @@
 
 namespace physinv {
 
-/// Unknowns, and who says so.
+/// Unknowns, and the name of their source.
 struct FoundBy {
   std::string who;  ///< "truth", "start", "JPO"
   Vector<double> x;

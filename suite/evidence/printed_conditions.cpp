@@ -42,9 +42,9 @@ Condition agree(
 /// Half a digit of what is printed.
 constexpr double kRounding = 0.05;
 
-/// Problems behind a seed's mean of shares over n, as far as its scatter goes:
-/// the square of how many n over the sum of 1 / n. The mean over seeds; 0 for
-/// no runs.
+/// Problems behind a seed's mean of shares over n, as to its scatter: the
+/// square of how many n over the sum of 1 / n. The mean over seeds; 0 for no
+/// runs.
 double problems_behind(const Evidence& e, const Select& runs) {
   std::map<std::uint64_t, std::pair<double, double>> seeds;
   for (const Run& run : find_runs(e, runs)) {

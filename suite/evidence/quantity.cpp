@@ -40,7 +40,7 @@ Quantity of_values(Select select, RunValue value, F statistic) {
                    });
 }
 
-/// A statistic of the order of values, which they lack if one is no number.
+/// A statistic of the order of values, which they lack if one is NaN.
 template <class F>
 Quantity of_ordered(Select select, RunValue value, F statistic) {
   return of_values(

@@ -17,9 +17,9 @@ struct RunningTime {
 
 /// `cost` until the target, infinite where it is not reached; `spent` is the
 /// same and, where it is not reached, all that was spent, NaN if not known:
-/// a run without a cost would make who gives up look cheap. The interval is of
-/// 1,000 resamplings of the problems (percentile bootstrap, Efron 1979), drawn
-/// from the stream of this name: same costs, same interval.
+/// a run without a cost would make a method that gives up look cheap. The
+/// interval is of 1,000 resamplings of the problems (percentile bootstrap,
+/// Efron 1979), drawn from the stream of this name: same costs, same interval.
 RunningTime expected_running_time(const std::vector<double>& cost,
                                   const std::vector<double>& spent,
                                   std::string_view name);

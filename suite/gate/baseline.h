@@ -62,8 +62,8 @@ std::string build_text();
 
 std::string to_text(const Baseline& baseline);
 
-/// StoreError if a byte is wrong, UnreadableInput if it is no baseline or one
-/// of a newer version. `where` is for messages.
+/// StoreError if a byte is wrong, UnreadableInput if it is not a baseline or
+/// one of a newer version. `where` is for messages.
 Baseline parse_baseline(const std::string& text, const std::string& where);
 Baseline read_baseline(const std::filesystem::path& path);
 

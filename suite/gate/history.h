@@ -1,5 +1,5 @@
-/// What a baseline said, commit by commit: losses, instructions and seconds,
-/// linked from each commit to the next over what both have.
+/// The contents of a baseline, commit by commit: losses, instructions and
+/// seconds, linked from each commit to the next over what both have.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ struct PastBaseline {
   std::map<std::string, std::uint64_t> instructions;  ///< of cases
 };
 
-/// std::runtime_error if it is no baseline.
+/// std::runtime_error if it is not a baseline.
 PastBaseline past_baseline(std::string_view text);
 
 /// Figures over the commits, oldest first, and a table of them; nothing of

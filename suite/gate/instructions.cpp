@@ -128,7 +128,7 @@ CountTable count_instructions(Counting counting,
                               const std::vector<std::string>& cases) {
   CountTable table{.counter = counter_name(counting),
                    .lines = std::vector<CountLine>(cases.size())};
-  // They do not depend on who else runs.
+  // They do not depend on what else runs.
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     for (std::size_t i = next++; i < cases.size(); i = next++)

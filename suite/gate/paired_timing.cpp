@@ -52,7 +52,7 @@ class OneCore {
 
 /// CPU time of solving: on one thread the same as by the wall, without what
 /// others took from the core. No number where a stage failed or diverged, which
-/// costs less and is no gain.
+/// costs less and is not a gain.
 std::map<std::string, double> times(const fs::path& directory) {
   std::map<std::string, double> sums;
   const auto results = read_results(directory);

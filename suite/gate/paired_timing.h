@@ -27,7 +27,7 @@ struct PairedTimingOptions {
   std::uint64_t seed = 0;  ///< of the order
 };
 
-/// The program's cases, so that those which only one of both has can be left
+/// The program's cases, so that those which only one of the two has can be left
 /// out. Throws EnvironmentError if it cannot list them.
 std::set<std::string> cases_known_to(const std::filesystem::path& program,
                                      const Chosen& chosen);
@@ -37,8 +37,8 @@ std::set<std::string> cases_known_to(const std::filesystem::path& program,
 void require_one_processor(const std::filesystem::path& base,
                            const std::filesystem::path& head);
 
-/// Who runs a program on some cases: milliseconds of solving for each of them;
-/// no number where a stage ended without a time.
+/// Runs a program on some cases: milliseconds of solving for each of them; no
+/// number where a stage ended without a time.
 using Runner = std::function<std::vector<double>(
     const std::filesystem::path& program, const std::vector<std::string>&)>;
 
@@ -48,7 +48,7 @@ Runner timed_run(const PairedTimingOptions& options);
 
 struct PairedTiming {
   std::vector<Decision> decisions;  ///< of each case
-  /// Who has no time of a case, so that it is not run again.
+  /// Which programs have no time of a case, so that it is not run again.
   struct Untimed {
     bool base = false, head = false;
   };

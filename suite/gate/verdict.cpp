@@ -80,7 +80,7 @@ void compare_losses(const StageLine& a, const StageLine& b, Reasons& found) {
   compare("worst", a.losses.worst, b.losses.worst, same_examples);
 }
 
-/// Do the costs of both compare? Who ended worse spent less.
+/// Do the costs of both compare? A stage that ended worse spent less.
 bool costs_compare(const StageLine& a, const StageLine& b) {
   return a.losses.nonfinite == b.losses.nonfinite &&
          (a.stop == b.stop || (completes(a.stop) && completes(b.stop)));

@@ -52,7 +52,7 @@ struct StageVerdict {
 /// Names agree.
 StageVerdict judge(const StageLine& before, const StageLine& now, Rules rules);
 
-/// All of both, in the order of the baseline, what was added last.
+/// All stages of both, in the order of the baseline, added ones last.
 std::vector<StageVerdict> judge(const std::vector<StageLine>& before,
                                 const std::vector<StageLine>& now,
                                 Rules rules);

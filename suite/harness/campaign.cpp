@@ -122,8 +122,8 @@ class Campaign {
       for (const auto& key : c.info.keys) store_.drop_state(key);
   }
 
-  /// Is the next stage of a case half done? `words` say so. What is damaged
-  /// goes.
+  /// Is the next stage of a case half done? `words` say so. What is damaged is
+  /// removed.
   void find_state(std::size_t i, Index position, std::string_view words) {
     const CaseInfo& info = cases_[i].info;
     const auto stage = static_cast<std::size_t>(position);

@@ -82,7 +82,7 @@ std::vector<std::size_t> largest_first(std::vector<std::size_t> queue,
                                        const std::vector<double>& work);
 
 /// Runs what the store does not hold. Only this process writes to it; finished
-/// stages go to the disk together, every two seconds (or as often as running
+/// stages are written together, every two seconds (or as often as running
 /// stages save their state, if that is more often). SIGINT and SIGTERM end the
 /// campaign with what has finished; running stages save their state if they
 /// can. A case whose worker is killed from outside is tried again.

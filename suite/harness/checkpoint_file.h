@@ -36,9 +36,9 @@ class CheckpointFile final : public Checkpoint {
                  const StageRecord& stage,
                  int threads);
 
-  /// What is damaged goes: the stage starts again.
+  /// What is damaged is removed: the stage starts again.
   std::optional<Archive> last() override;
-  /// Has the stage gone on from a state?
+  /// Has the stage continued from a state?
   bool restored() const { return restored_; }
   /// The stage cannot continue from there.
   void drop();

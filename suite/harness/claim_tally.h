@@ -12,7 +12,7 @@
 namespace physinv {
 
 /// "jpo/arm R3, jpo/billiards P1": claims that may fail without a cause.
-/// UsageError if one of them is no claim of the registry or of the sections.
+/// UsageError if one of them is not a claim of the registry or of the sections.
 std::vector<std::string> expected_to_fail(const std::string& names,
                                           const Registry& registry,
                                           const std::vector<Section>& sections);

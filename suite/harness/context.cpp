@@ -85,8 +85,8 @@ json load() {
   return all;
 }
 
-/// Who else wrote what ran: the program, if it is not the suite's, and what it
-/// loaded.
+/// Other sources of what ran: the program, if it is not the suite's, and what
+/// it loaded.
 void add_outsides(json& context) {
   if (const Outside* own = outside_program()) context["program"] = own->name;
   for (const Outside& o : outsides())

@@ -7,7 +7,7 @@
 
 namespace physinv {
 
-/// By worker. Cores that are free go one by one to the case that has most work
+/// By worker. Free cores are given one by one to the case that has most work
 /// left per thread.
 class CoreShares {
  public:

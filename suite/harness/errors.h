@@ -23,7 +23,7 @@ enum class ExitCode : int {
   interrupted = 130,
 };
 
-/// The same in the words of --help. Where several hold, 130 goes before 4
+/// The same in the words of --help. Where several apply, 130 comes before 4
 /// before 5 and so on to 10.
 inline constexpr std::string_view kExitCodeHelp =
     R"(    0  good, and complete

@@ -8,7 +8,7 @@
 namespace physinv {
 
 /// Name of the processor from the text of /proc/cpuinfo: its "model name"; on
-/// aarch64, where Linux writes none, who designed the core and which it is
+/// aarch64, where Linux writes none, the designer and the model of the core
 /// ("ARM Neoverse-N1", "0x61 part 0x022" if not known here). `board` is the
 /// machine's name in the device tree ("Raspberry Pi 4 Model B"), may be empty,
 /// and stands for what the text does not say. Empty if it is not known. Numbers

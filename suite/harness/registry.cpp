@@ -116,7 +116,7 @@ void Registry::validate() const {
 std::vector<std::string> Registry::profiles() const {
   std::vector<std::string> names;
   for (const auto& e : experiments_) {
-    // A new one goes in front of the next that is known.
+    // A new one is put in front of the next that is known.
     auto next = names.end();
     for (auto p = e->profiles.rbegin(); p != e->profiles.rend(); ++p) {
       const auto known = std::find(names.begin(), names.end(), p->name);

@@ -44,8 +44,8 @@ std::set<std::string> unknown_sources(const Experiment& e) {
   return wrong;
 }
 
-/// Sources from outside whose numbers no stage owns up to: an edit of them
-/// would go unseen. Where experiments are left out, theirs are not known.
+/// Sources from outside that no stage names: an edit of them would change no
+/// key. Where experiments are left out, theirs are not known.
 std::vector<std::string> unreached_sources(const Registry& registry) {
   std::vector<std::string> wrong = outside_problems();
   if (outsides().empty() || !elsewhere().empty()) return wrong;

@@ -96,9 +96,9 @@ void note_overrun(Outcome& out, Index budget) {
       (beyond.array() > 0).select(beyond, 0.0);
 }
 
-/// What the numbers are goes before what the stage says of them: an estimate
-/// that is not finite has no loss, a sample without a finite loss ends as
-/// `nonfinite`, and no stage with such a sample has converged.
+/// The numbers decide before what the stage says of them: an estimate that is
+/// not finite has no loss, a sample without a finite loss ends as `nonfinite`,
+/// and no stage with such a sample has converged.
 void settle(StageRecord& r, Outcome& out) {
   for (Index i = 0; i < r.loss.size(); ++i) {
     if (std::isfinite(r.loss(i)) && !out.x.col(i).allFinite())

@@ -16,7 +16,7 @@ struct Screen {
   bool quiet = false;  ///< nothing while a campaign runs
   int columns = 80;
 
-  /// Of a table's lines: what is no terminal takes all of them.
+  /// Of a table's lines: other outputs than terminals take all of them.
   std::size_t room() const {
     return terminal ? static_cast<std::size_t>(columns)
                     : std::string_view::npos;

@@ -23,7 +23,7 @@ inline constexpr std::size_t kLongestPatterns = 1 << 18;  ///< in sum
 class NameFilter {
  public:
   NameFilter() = default;
-  /// Throws UsageError naming the pattern that is no regular expression, or
+  /// Throws UsageError naming the pattern that is not a regular expression, or
   /// too long, and `whose` it is.
   explicit NameFilter(const std::vector<std::string>& patterns,
                       std::string_view whose = "--filter");

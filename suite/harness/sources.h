@@ -15,8 +15,8 @@
 
 namespace physinv {
 
-/// Sources and who includes whom. From a root one reaches what it includes,
-/// and from a header x.h its implementation x.cpp in the same folder. A header
+/// Sources and what they include. From a root one reaches what it includes, and
+/// from a header x.h its implementation x.cpp in the same folder. A header
 /// whose implementation has another name must be a root itself; a test lists
 /// sources that nothing reaches.
 class SourceGraph {
@@ -36,7 +36,7 @@ class SourceGraph {
   std::set<std::string> closure(const std::vector<Sources>& chain) const;
 
   /// Roots that are no files, lines without effect that are not in the file,
-  /// and included headers of the project that the graph does not know: one text
+  /// and included headers of the project that the graph does not have: one text
   /// each.
   std::vector<std::string> errors(const Sources& sources) const;
 

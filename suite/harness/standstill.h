@@ -1,5 +1,5 @@
-/// Which workers stand still: they have a case at hand, report nothing of it
-/// and compute nothing, as when they wait for a lock whose owner is gone.
+/// Which workers stand still: they have a case, report nothing of it and
+/// compute nothing, as when they wait for a lock whose owner is gone.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,9 @@ class Standstill {
   /// Computing is more than one hundredth of the time on a core.
   explicit Standstill(double seconds) : seconds_(seconds) {}
 
-  /// Worker `w` told something, or got a case, at the time `now` [s].
+  /// Worker `w` reported something, or got a case, at the time `now` [s].
   void moved(std::size_t w, double now);
-  /// It has none at hand.
+  /// It has no case.
   void idle(std::size_t w);
   /// Has it stood still for that long at `now`, with so many CPU seconds so
   /// far? True once, and again after it has moved.

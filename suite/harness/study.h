@@ -16,7 +16,7 @@
 
 namespace physinv {
 
-/// Said once for each study, before its cases run; returns true.
+/// Printed once for each study, before its cases run; returns true.
 bool register_study(const std::string& study, const std::string& varied);
 
 /// The experiment on whose name the streams of this one hang: what it varies,

@@ -60,18 +60,18 @@ class BodyReader {
   std::span<const std::uint8_t> body_;
 };
 
-/// Sends all of it, waiting if it must; false if the other side is gone.
+/// Sends all of it, waiting if it must; false if the other side has ended.
 bool send_message(int socket,
                   std::uint32_t kind,
                   std::span<const std::uint8_t> body);
 
-/// Waits for one message; nothing if the other side is gone.
+/// Waits for one message; nothing if the other side has ended.
 std::optional<Message> receive_message(int socket);
 
 /// Collects what arrives on a socket without waiting.
 class Inbox {
  public:
-  /// Reads what is there; false once the other side is gone.
+  /// Reads what is there; false once the other side has ended.
   bool fill(int socket);
   /// The next complete message.
   std::optional<Message> next();

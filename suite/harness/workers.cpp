@@ -271,7 +271,7 @@ void Workers::submit(std::size_t worker,
   Worker& w = workers_[worker];
   w.busy = true;
   w.case_index = case_index;
-  // If it is gone, the next `wait` notices.
+  // If it has ended, the next `wait` notices.
   send_message(w.socket, kRun, body.take());
 }
 

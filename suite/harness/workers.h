@@ -33,7 +33,7 @@ struct WorkerEvent {
   StageRecord record;    ///< stage_done
   std::string message;   ///< died: how
   bool killed = false;   ///< died: by SIGKILL, so from outside
-  bool crashed = false;  ///< died: by a signal of its own making
+  bool crashed = false;  ///< died: by a signal that it raised itself
 };
 
 class Workers {
@@ -66,7 +66,7 @@ class Workers {
   /// Running stages save their state where they can, and their workers leave:
   /// they die and are not replaced.
   void dismiss();
-  /// Has one a case at hand?
+  /// Is a worker busy with a case?
   bool busy() const;
 
   /// Waits up to `seconds` (or a signal) and returns what arrived. Throws

@@ -7,8 +7,8 @@
 ///      (Dhillon and Parlett 2004)
 ///
 /// Small values come out with high relative accuracy. Vectors of values that
-/// lie close to each other do not come out orthogonal: that is measured, and
-/// told.
+/// lie close to each other do not come out orthogonal: that is measured and
+/// reported.
 #pragma once
 
 #include "suite/core/batch.h"

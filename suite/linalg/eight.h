@@ -1,6 +1,6 @@
 /// Eight doubles that go through every operation together: one register of 512
-/// bits, or two of 256. Their number decides about the order of sums and about
-/// who searches with whom.
+/// bits, or two of 256. Their number decides the order of sums and which values
+/// are searched together.
 #pragma once
 
 #include "suite/core/simd/math.h"

@@ -11,7 +11,7 @@ namespace physinv::linalg {
 namespace {
 
 constexpr Index kSweepsPerRow = 60;
-/// Shorter blocks go sweep by sweep, as does a block that this many rounds
+/// Shorter blocks run sweep by sweep, as does a block that this many rounds
 /// have not shortened.
 constexpr Index kLongBlock = 4 * kSweeps;
 constexpr Index kPatience = 30;

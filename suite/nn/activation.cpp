@@ -35,7 +35,7 @@ std::string_view to_string(Activation a) {
   return names[static_cast<std::size_t>(a)];
 }
 
-// A loop of its own for ReLU: it costs less than to ask at each vector.
+// A separate loop for ReLU: it costs less than a test at each vector.
 
 template <class T>
 void activate_rows(Activation a, Rows<T> z, Index first, Index last) {

@@ -26,8 +26,8 @@ struct Constants {
   Scratch<T> values;
 };
 
-/// b + W_const x_const, one number per output. Rows go in groups, so that
-/// their sums, each in order, hide each other's latency.
+/// b + W_const x_const, one number per output. Rows are taken in groups, so
+/// that their sums, each in order, hide each other's latency.
 template <class T>
 void fold_bias(const T* weights,
                const T* bias,

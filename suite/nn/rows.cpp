@@ -178,7 +178,7 @@ void row_sums(Rows<const T> x, T* sums) {
   V lane{};
   for (Index l = 0; l < w; ++l) lane[l] = static_cast<T>(l);
   const auto valid = lane < broadcast<V>(static_cast<T>(x.samples - full));
-  // Rows go together, as one would wait for its own sum at every step.
+  // Rows are summed together, as one would wait for its own sum at every step.
   for (Index i = 0; i < x.rows; i += kRows) {
     const Index last = std::min(kRows, x.rows - i) - 1;
     const T* rows[kRows];

@@ -55,7 +55,7 @@ Layers<T> with_activations_taken_in(Layers<T> layers) {
   return fused;
 }
 
-/// What a later call must know about the last forward pass.
+/// What a later call needs of the last forward pass.
 struct Header {
   Index samples = 0, training = 0, fixed = 0;
   Index measured = 0;  ///< constant rows were looked for
@@ -77,7 +77,7 @@ struct Header {
     leading = constant_rows(x, 0, 1);
     trailing = leading == x.rows ? 0 : constant_rows(x, x.rows - 1, -1);
   }
-  /// Constant rows are left to who folds them.
+  /// Constant rows are left to the code that folds them.
   template <class T>
   Replay<T> replay(VectorIn<T> parameters,
                    const Tape& tape,

@@ -99,8 +99,8 @@ inline bool are_thin(Index x_rows, Index y_rows) {
 }
 
 /// out[i * x_step + j * y_step] = x_i . y_j over the samples. One of the two
-/// has zeros behind the last sample. The fewer rows are gone through one by
-/// one, the others in groups.
+/// has zeros behind the last sample. The fewer rows are taken one by one, the
+/// others in groups.
 template <class T>
 void row_products(
     Rows<const T> x, Rows<const T> y, T* out, Index x_step, Index y_step) {

@@ -166,7 +166,7 @@ class Memory {
         8 * points * static_cast<double>(n) +
         8 * points *
             product(recorded > 0 ? std::min(recorded, n) : n, shape.unknowns);
-    constexpr double kCopies = 3;  // of what goes to the disk
+    constexpr double kCopies = 3;  // of what is written to the disk
     return buffers + all + kCopies * (curve + 8 * product(n, shape.unknowns));
   }
 

@@ -1,4 +1,4 @@
-/// What cases will cost, said at once: nothing is run for it.
+/// What cases will cost, without running anything.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +11,8 @@
 namespace physinv {
 
 /// In the order of the cases. Times are the published ones of the same stages,
-/// in proportion to counted operations and to this machine's `factor`; of
-/// other chains those that `trials` knows; else not known (NaN).
+/// in proportion to counted operations and to this machine's `factor`; of other
+/// chains those that `trials` has; else not known (NaN).
 std::vector<Cost> forecast(const std::vector<Case>& cases,
                            const Durations& published,
                            const Trials& trials,

@@ -201,7 +201,7 @@ std::optional<QueueLine> queue_line(const std::string& text) {
   return line;
 }
 
-/// Of a campaign's tasks; others, and "N/A" for a job that is no array, are
+/// Of a campaign's tasks; others, and "N/A" for a job that is not an array, are
 /// none.
 std::optional<std::size_t> task_number(const std::string& text,
                                        std::size_t tasks) {

@@ -1,5 +1,5 @@
-/// A campaign on a cluster: its tasks in files, so that workers and users who
-/// asks how it goes need nothing but a shared file system.
+/// A campaign on a cluster: its tasks in files, so that workers, and users who
+/// ask for its state, need only a shared file system.
 ///
 ///   DIR/submission.json  the command, the tasks' cases and the jobs
 ///   DIR/tasks/K.txt      names of the cases of task K
@@ -54,7 +54,7 @@ std::vector<TaskState> states_of(const Submission& submission);
 std::string ask_queue(const Submission& submission,
                       std::vector<TaskState>& states);
 
-/// UsageError if sbatch cannot be told of files in this directory.
+/// UsageError if sbatch cannot be given the names of files in this directory.
 void require_expressible(const std::filesystem::path& directory);
 
 /// Submits an array of these tasks and returns its job id. EnvironmentError if

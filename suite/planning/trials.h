@@ -31,7 +31,7 @@ double curve_points(Index iterations);
 /// The stages of one chain; fewer if the chain was not run to its end.
 using Trial = std::vector<StageTrial>;
 
-/// What a cache holds, by recipe: nothing if it is no JSON, StoreError with
+/// What a cache holds, by recipe: nothing if it is not JSON, StoreError with
 /// `path` if it is of other types or values.
 std::map<std::string, Trial> parse_trials(std::string_view bytes,
                                           const std::filesystem::path& path);
@@ -46,7 +46,7 @@ class Trials {
   /// That there is no file, and why; else empty.
   std::string warning() const;
 
-  /// Runs the chain of `c` for a moment, or knows it already. Stages whose
+  /// Runs the chain of `c` for a moment, unless it has already. Stages whose
   /// work does not follow their iterations run whole, on few samples; with
   /// `training_only` they and all after them are left out.
   const Trial& measured(const Case& c, bool training_only);
@@ -56,7 +56,7 @@ class Trials {
 
   /// Of those that ran now, not those known.
   std::size_t ran() const { return ran_; }
-  /// Keeps what is new. A cache that cannot be written is no error.
+  /// Keeps what is new. A cache that cannot be written is not an error.
   void save() const;
 
  private:

@@ -140,7 +140,7 @@ enum class Verdict {
   reproduced,
   stronger,       ///< than printed, in the same direction
   weaker,         ///< than printed, in the same direction
-  differs,        ///< one of both; older files do not say which
+  differs,        ///< one of the two; older files do not say which
   depends,        ///< on a choice that the paper does not print
   contradiction,  ///< tables, formulas or sentences of the paper disagree
   not_reproduced,

@@ -139,7 +139,7 @@ void read(hid_t group, const ArrayPlace& at, std::vector<Status>& to) {
 }
 
 void read_arrays(const hdf5::Handle& group, StageRecord& r) {
-  hdf5::open_group(group, "curve");  // it is no link
+  hdf5::open_group(group, "curve");  // it is not a link
   each_array(
       r, [&](const ArrayPlace& at, auto& array) { read(group, at, array); });
   const auto arrays = hdf5::open_group(group, "arrays");

@@ -57,7 +57,7 @@ class CaseFile {
 
   /// What the case is, with the run of its latest stage; comes first.
   void describe(const CaseInfo& info, const StageRecord& latest);
-  /// What `describe` was told.
+  /// What `describe` wrote.
   About about() const;
 
   void put_data(const CaseData& data);

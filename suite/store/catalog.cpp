@@ -118,7 +118,7 @@ std::optional<StageRecord> Catalog::find(
 }
 
 std::optional<StageRecord> Catalog::load(const JournalEntry& entry) const {
-  // Gone, or replaced by a run that was killed before its journal line: the
+  // Deleted, or replaced by a run that was killed before its journal line: the
   // stage counts as not run.
   const auto file = case_file(entry.info.name);
   if (!file || !file->has_stage(entry.stage, entry.arrays_hash))

@@ -34,7 +34,7 @@ class Catalog {
   void add(JournalEntry entry);
   const std::vector<JournalEntry>& entries() const { return entries_; }
   const JournalText& journal() const { return journal_; }
-  /// What a reader should be told: a torn line, a plan that is missing or old.
+  /// Warnings for the reader: a torn line, a plan that is missing or old.
   const std::vector<std::string>& warnings() const { return warnings_; }
   bool knows_case(const std::string& case_name) const;
   const JournalEntry* at(const std::string& case_name, Index position) const;
@@ -43,8 +43,8 @@ class Catalog {
   CaseInfo info_of(const std::string& case_name) const;
 
   /// The stage with this content key, of whichever case; one with a result if
-  /// there is one. Nothing if its arrays are gone. With `among`, only of these
-  /// cases.
+  /// there is one. Nothing if its arrays are deleted. With `among`, only of
+  /// these cases.
   std::optional<StageRecord> find(
       const std::string& key,
       const std::set<std::string>* among = nullptr) const;

@@ -223,7 +223,7 @@ bool Folder::remove_if(const std::string& name, std::string_view bytes) const {
   if (::renameat(fd_.get(), component(name), fd_.get(), aside.c_str()) < 0)
     fail_file("delete", path_ / name, errno);
   const bool same = read(aside, kLargestText) == bytes;
-  // Another has put its own there meanwhile: it goes back.
+  // Another process has put its own there meanwhile: it is restored.
   if (!same) ::linkat(fd_.get(), aside.c_str(), fd_.get(), name.c_str(), 0);
   remove(aside);
   return same;

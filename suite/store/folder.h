@@ -1,5 +1,5 @@
 /// A directory that holds what the suite makes, such as a store. Its files are
-/// reached through it, wherever its name points by now, and no link in it is
+/// reached through it, wherever its name points now, and no link in it is
 /// followed: what is outside is not touched.
 #pragma once
 
@@ -72,7 +72,7 @@ class Folder {
 class FileGroup {
  public:
   explicit FileGroup(const Folder& folder) : folder_(folder) {}
-  /// What was not put in place goes.
+  /// What was not put in place is removed.
   ~FileGroup();
   FileGroup(const FileGroup&) = delete;
   FileGroup& operator=(const FileGroup&) = delete;

@@ -16,7 +16,7 @@ namespace physinv {
 /// what is newer.
 inline constexpr int kSchemaVersion = 1;
 
-/// What a file holds. Throws std::exception for what is no JSON, or nested
+/// What a file holds. Throws std::exception for what is not JSON, or nested
 /// deeper than anything the suite writes.
 template <class Json = nlohmann::json>
 Json parse_json(std::string_view text);

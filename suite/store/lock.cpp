@@ -126,7 +126,7 @@ bool is_gone(const Owner& owner, const Owner& self) {
       holder));
 }
 
-/// Who says so in the lock; anybody may have written there.
+/// The process that the lock names; any process may have written there.
 std::string holder(const Folder& folder) {
   const auto text = folder.read(kLock, kLargestOwner);
   const bool number = !text.empty() && text.size() < 20 &&
@@ -212,7 +212,7 @@ DirectoryLock::~DirectoryLock() {
   if (process_ == 0 || process_ != ::getpid()) return;
   try {
     Folder(directory_).remove_if(kOwner, owner_);
-  } catch (const StoreError&) {  // who comes next finds that we have ended
+  } catch (const StoreError&) {  // the next process finds that we have ended
   }
 }
 

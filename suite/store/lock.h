@@ -12,17 +12,17 @@ namespace physinv {
 struct LockOptions {
   /// Where only a file can stand for the lock: take it from its owner.
   bool break_lock = false;
-  /// Who we are; a test is somebody else.
+  /// Names of this host and boot; tests set others.
   std::string host = {}, boot = {};
   int (*flock)(int fd, int operation) = ::flock;
 };
 
-/// Held while somebody writes to a directory, in its file `lock`. Dies with
+/// Held while a process writes to a directory, in its file `lock`. Dies with
 /// its process; a forked child keeps it too.
 ///
 /// On file systems without flock the file `lock.owner`, made exclusively,
-/// stands for it: host, process and boot of who holds it. What a process of
-/// this machine left that is gone is taken over.
+/// stands for it: host, process and boot of its owner. What a process of this
+/// machine left that is gone is taken over.
 class DirectoryLock {
  public:
   DirectoryLock() = default;
@@ -32,7 +32,7 @@ class DirectoryLock {
   DirectoryLock& operator=(DirectoryLock&& o) noexcept;
   ~DirectoryLock();
 
-  /// What the user should know: no flock there, or whose lock was broken.
+  /// A warning for the user: no flock there, or whose lock was broken.
   const std::string& warning() const { return warning_; }
 
  private:
@@ -40,7 +40,7 @@ class DirectoryLock {
 
   FileDescriptor fd_;
   std::string warning_;
-  // Where a file stands for the lock: what it says, and who made it.
+  // Where a file stands for the lock: what it says, and its owner.
   std::filesystem::path directory_;
   std::string owner_;
   int process_ = 0;

@@ -59,7 +59,7 @@ json set_flags(const Catalog& c) {
 void check_same_campaign(const Catalog& a, const Catalog& b) {
   for (const char* what : {"profile", "fingerprint", "cases"}) {
     const json of_a = a.plan.at(what), of_b = b.plan.at(what);
-    // A shard without cases does not know its profile.
+    // A shard without cases has no profile.
     if (of_a == of_b || of_a == "" || of_b == "") continue;
     refuse(
         a,

@@ -15,7 +15,7 @@ struct MissingWork {
   std::vector<std::string> unrun_cases;   ///< planned, without a stage
   std::vector<std::string> unrun_stages;  ///< "case stage", so below
   std::vector<std::string> failed;        ///< failed or skipped
-  std::vector<std::string> lost;  ///< in the journal, arrays gone or replaced
+  std::vector<std::string> lost;  ///< in the journal, arrays lost or replaced
   bool unknown_plan = false;
 
   bool any() const;

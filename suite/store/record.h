@@ -85,17 +85,18 @@ struct StageRecord {
   std::vector<Seconds> repeated;
 };
 
-/// Did it run to an end of its own? A divergence is a result, too.
+/// Did it end by itself? A divergence is a result, too.
 inline bool has_result(const StageRecord& stage) {
   return stage.stop != Stop::failed && stage.stop != Stop::skipped;
 }
 
-/// Did it do what it was asked for? Who failed, was skipped or diverged spent
-/// less and gained nothing: its costs, time and work, are no costs.
+/// Did it do what it was asked for? A stage that failed, was skipped or
+/// diverged spent less and gained nothing: its costs, time and work, do not
+/// count.
 constexpr bool completes(Stop stop) {
   return stop == Stop::converged || stop == Stop::iterations;
 }
-/// So has an end that its time can be told for.
+/// Did it end so that its time counts?
 inline bool has_time(const StageRecord& stage) { return completes(stage.stop); }
 
 /// Problem data of a case, so that results can be verified alone.

@@ -208,7 +208,7 @@ std::string differing_key(const Json& context, const nlohmann::json& plan) {
   return {};
 }
 
-/// Is no stage newer than the file? Then its context is the plan's, too.
+/// Is the file as new as every stage? Then its context is the plan's, too.
 bool tells_all(const Json& results, const Json& own) {
   std::set<std::string> told;
   for (const Json& entry : results.at("benchmarks")) told.insert(run_of(entry));

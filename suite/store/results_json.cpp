@@ -166,8 +166,8 @@ Json full_context(const nlohmann::json& given) {
 }  // namespace
 
 Json error_entry(const std::string& name, const std::string& message) {
-  // compare.py takes the times of whatever is no aggregate, and pairs entries
-  // of one unit.
+  // compare.py takes the times of every entry that is not an aggregate, and
+  // pairs entries of one unit.
   return {{"name", name},
           {"family_index", 0},
           {"per_family_instance_index", 0},

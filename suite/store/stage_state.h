@@ -3,7 +3,8 @@
 ///   checkpoints/<content key>   <8 hexadecimal digits: CRC-32C of the rest>
 ///                               <compact JSON>\n<bytes>
 ///
-/// Written by the one who runs the stage, deleted once its record is there.
+/// Written by the process that runs the stage, deleted once its record is
+/// there.
 #pragma once
 
 #include <filesystem>

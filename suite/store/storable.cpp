@@ -50,7 +50,7 @@ bool has_estimates(const StageRecord& r) {
   return true;
 }
 
-/// The first array that holds what is no number where there must be one.
+/// The first array with an infinity or NaN where there must be a number.
 std::string wrong_numbers(const StageRecord& r) {
   const bool converged = r.stop == Stop::converged;
   const std::pair<const char*, bool> arrays[] = {

@@ -54,7 +54,7 @@ void remove_passing_stores(const Folder& folder) {
     if (!is_new_folder(name)) continue;
     try {
       remove_store(folder, name);
-    } catch (const StoreError&) {  // in use, or a file that goes anyway
+    } catch (const StoreError&) {  // in use, or a file that is removed anyway
     }
   }
 }
@@ -102,7 +102,7 @@ std::optional<nlohmann::ordered_json> known_results(const fs::path& directory) {
   }
 }
 
-/// Damaged ones are for those to name who read them.
+/// Damaged ones are reported where they are read.
 Repetitions known_repetitions(const fs::path& directory) {
   try {
     return read_repetitions(directory);
@@ -161,7 +161,7 @@ bool Store::exists(const fs::path& directory) {
 
 void Store::forget(const std::set<std::string>& names) {
   commit();
-  // The lines go first: a file that no line names counts for nothing.
+  // The lines are removed first: a file that no line names does not count.
   forget_cases(catalog_.journal_path(), names);
   for (const auto& name : names) {
     open_.erase(name);

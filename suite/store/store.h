@@ -29,7 +29,7 @@
 
 namespace physinv {
 
-/// How long a finished stage waits at most for others to go to the disk with.
+/// How long a finished stage waits at most for others to be written with it.
 inline constexpr double kCommitSeconds = 2;
 
 class Store {
@@ -119,8 +119,8 @@ void keep_repetitions(const std::filesystem::path& directory,
                       const LockOptions& lock = {});
 
 /// A new store in the folder of another, with a name that only the suite makes;
-/// it is removed with all that a store holds. What a kill leaves of it goes
-/// when the other is opened for writing.
+/// it is removed with all that a store holds. What a kill leaves of it is
+/// removed when the other is opened for writing.
 class PassingStore {
  public:
   explicit PassingStore(const std::filesystem::path& beside);

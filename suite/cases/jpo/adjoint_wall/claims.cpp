@@ -40,8 +40,8 @@ Quantity percent_of(const Wall& w, const Column& c) {
   return percent(mean(runs, c.share(Equality::strict)));
 }
 
-/// Of the problems whose paths are kept, at the largest n. What the study's
-/// problem is, the registry knows once all are registered.
+/// Of the problems whose paths are kept, at the largest n. The registry has the
+/// study's problem once all are registered.
 Quantity at_the_wall(const Study& s, const Wall& w) {
   const Select runs{w.method(), "solve"};
   const auto beyond = std::make_shared<RunRow>();

@@ -1,4 +1,4 @@
-// What claims.md asks for that is no formula.
+// What claims.md uses and formulas cannot express.
 #include <cmath>
 #include <string>
 #include <vector>

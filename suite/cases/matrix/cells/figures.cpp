@@ -1,5 +1,5 @@
-// One page of the whole matrix: who ends lowest, who is there first, and why a
-// cell is empty.
+// One page of the whole matrix: which method ends lowest, which is there first,
+// and why a cell is empty.
 
 #include <algorithm>
 #include <cmath>

@@ -19,7 +19,7 @@ struct Numbers {
   std::vector<double> loss, iterations, seconds;
 };
 
-/// Of all stages of the chain, if that can be told of each.
+/// Of all stages of the chain, if it is known of each.
 std::optional<double> seconds_of(const Run& run, TimedStages& timed) {
   double sum = 0;
   for (const StageRecord& stage : run.record->stages) {

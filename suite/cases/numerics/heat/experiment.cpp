@@ -1,4 +1,4 @@
-// Diffusion from weak to hopeless: where what is left of a wave is still told
+// Diffusion from weak to hopeless: where what is left of a wave still differs
 // from rounding, and what the local inverse makes of it.
 #include <fmt/format.h>
 
@@ -29,7 +29,7 @@ Vector<double> wave(double k, double /*end_time*/) {
 
 const SweepAxis kTimes{"end time", {1, 2, 4, 8, 16, 32, 64}, true};
 
-/// What is said of noise, at one end time; the inverse's error is that of x.
+/// What noise does, at one end time; the inverse's error is that of x.
 NumericalParameter floor_parameter(double end_time) {
   const SweepAxis floors{fmt::format("end time {}, noise floor", end_time),
                          {1e-3, 1e-6, 1e-9, 1e-12},

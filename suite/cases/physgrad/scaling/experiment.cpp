@@ -1,5 +1,5 @@
 // The chapter "Scale-invariance and inversion": steps that know more or less of
-// two small problems. Two experiments, as each toy is a problem of its own.
+// two small problems. Two experiments, as each toy is a separate problem.
 #include <string>
 #include <utility>
 #include <vector>

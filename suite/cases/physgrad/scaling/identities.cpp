@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kStep = 0.1;
 
-/// A problem on a batch of its own.
+/// A problem on its own batch.
 struct Bench {
   explicit Bench(int power) : problem(problems::scaling({.power = power})) {}
 

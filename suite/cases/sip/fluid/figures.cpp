@@ -42,7 +42,7 @@ Vector<double> carried(const Vector<double>& x,
   return y;
 }
 
-/// The first test example of the first seed: who says what, truth first.
+/// The first test example of the first seed by each method, truth first.
 struct Said {
   std::string who;
   Vector<double> x, marker;

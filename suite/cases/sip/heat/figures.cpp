@@ -177,7 +177,7 @@ Table study(const Evidence& e,
               .columns = {"SIP", "Adam"},
               .across = Across{.key = "method", .quantities = {"error"}}};
   for (const GridPoint& cell : points) {
-    if (cell.id("") == "") continue;  // has a length of its own
+    if (cell.id("") == "") continue;  // has its own length
     const auto sip = end(e, cell.id("sip"), kError),
                adam = end(e, cell.id("adam"), kError);
     if (!sip && !adam) continue;

@@ -188,7 +188,7 @@ Experiment experiment(const Domain& p) {
           .methods = methods(p)};
 }
 
-/// Fourier neural operator: a network of its own, so an experiment of its own.
+/// Fourier neural operator: another network, so another experiment.
 Experiment operator_experiment(const Domain& domain, Index width) {
   Experiment e = experiment(domain);
   e.setting.predictor.recipe = nn::fno({.grid = {64, 64}, .width = width});
