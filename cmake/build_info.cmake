@@ -2,7 +2,7 @@
 # with hash and #include lines of every source that numbers can come from, read
 # at build time by physinv-sources (sources.cpp). The file is rewritten only when
 # its content changes, which comments and formatting do not.
-# The bits of exp and sin are SLEEF's, whose version stands in its header.
+# The bits of exp and sin are SLEEF's, whose version is in its header.
 file(STRINGS ${SLEEF_INCLUDE_DIR}/sleef.h lines
   REGEX "^#define SLEEF_VERSION_(MAJOR|MINOR|PATCHLEVEL) ")
 string(REGEX MATCHALL "[0-9]+" physinv_sleef "${lines}")

@@ -47,7 +47,7 @@ find_folder() {
   done <"$root/suite/cases/common/experiments.def"
   [[ $filter != *'*'/ ]] && results_are_of "${out:-results/$profile}" "${all[@]}" ||
     return 0
-  # shellcheck disable=SC2034 # read by who calls this
+  # shellcheck disable=SC2034 # read by the caller
   folder=$found
 }
 

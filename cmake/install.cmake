@@ -26,7 +26,7 @@ install(TARGETS physinv physinv_flags ${layers}
   physinv_gate physinv_compare physinv_planning physinv_reports
   physinv_published_pages
   EXPORT physinv COMPONENT development)
-# Their main, which stands in the sources of a program.
+# Their main, which is in the sources of a program.
 install(TARGETS physinv_main EXPORT physinv
   OBJECTS DESTINATION ${CMAKE_INSTALL_LIBDIR}/physinv COMPONENT development)
 install(EXPORT physinv NAMESPACE physinv:: FILE physinv-targets.cmake

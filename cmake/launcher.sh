@@ -5,7 +5,7 @@
 # When nothing changed since the last build, only find is started.
 : "${root:?set by the launcher}"
 # cmake and ctest take a checkout's path from it, where it is the same folder:
-# through a symbolic link they would see another one, and build all anew.
+# through a symbolic link they would see another one, and build all again.
 export -n PWD
 
 say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
@@ -90,7 +90,7 @@ install() {
 }
 
 # configure TREE ON|OFF: once, and again when tests are wanted for the first
-# time. A tree that came along with a copied or moved checkout is made anew.
+# time. A tree that was copied or moved with its checkout is made again.
 configure() {
   local tree=$1 tests=$2 known_tests='' known_root=''
   [[ ! -r $tree/.configured ]] ||
@@ -109,7 +109,7 @@ configure() {
 }
 
 # is_built TREE PROGRAM...: are they as `built` noted them, and is nothing newer that
-# a build reads? Sources, where git stands, the tree's configuration, the machine's
+# a build reads? Sources, git's present commit, the tree's configuration, the machine's
 # headers by its packages. Ninja would look at each of its thousands of files.
 is_built() {
   local tree=$1 git=$root/.git known='' file

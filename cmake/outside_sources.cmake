@@ -7,7 +7,7 @@ cmake_minimum_required(VERSION 3.25)
 include(${info}/values.cmake)
 include(${package}/physinv-build.cmake)
 
-# The path that a file goes by.
+# The path that names a file.
 function(physinv_name result path)
   set(${result} "" PARENT_SCOPE)
   cmake_path(IS_PREFIX headers "${path}" of_suite)

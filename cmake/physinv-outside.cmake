@@ -1,4 +1,4 @@
-# What find_package(physinv) gives beside its libraries (docs/extending.md):
+# What find_package(physinv) gives in addition to its libraries (docs/extending.md):
 #
 #   physinv_add_program(<name> SOURCES <source>...)
 #     a program with all verbs of physinv-bench over what SOURCES register
@@ -89,7 +89,7 @@ function(physinv_add_plugin name)
 endfunction()
 
 # Of the objects of the program or plug-in and with its libraries: what it says
-# of itself stands in one of its own.
+# of itself is in one of its own.
 function(physinv_add_contract_tests name)
   if(ARGN OR NOT TARGET ${name})
     message(FATAL_ERROR "physinv_add_contract_tests(${name} ${ARGN}): "

@@ -1,4 +1,4 @@
-# Programs stand at the top of the build tree, where the launchers look.
+# Programs are at the top of the build tree, where the launchers look.
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
 
 find_program(PHYSINV_CCACHE ccache)
@@ -137,7 +137,7 @@ endfunction()
 
 # physinv_layer(<name> [OBJECT] [NUMBERS | RECORDS] [PRECOMPILE headers]
 # SOURCES a.cpp "b.cpp c.cpp" ... DEPENDS ...): one target per layer. Sources
-# between quotes are compiled as one; so a new one compiles no other batch anew.
+# between quotes are compiled as one; so a new one compiles no other batch again.
 # OBJECT keeps the linker from dropping registrations that nothing uses. NUMBERS
 # computes what is recorded: physinv_<name>_v3 is the same for AVX2, where that is
 # another build. PRECOMPILE: headers of the project that nearly every source of
@@ -204,7 +204,7 @@ function(physinv_layer name)
   endif()
 endfunction()
 
-# Built for who asks.
+# Built on request.
 function(physinv_layer_v3 name kind sources depends)
   list(FILTER depends EXCLUDE REGEX "^physinv_")
   add_library(physinv_${name}_v3 ${kind} EXCLUDE_FROM_ALL ${sources})
@@ -236,7 +236,8 @@ function(physinv_refuse_unlisted)
   endif()
 endfunction()
 
-# physinv_layers(<name> <layer>...): one name for several, for who takes them all.
+# physinv_layers(<name> <layer>...): one name for several, for targets that use
+# them all.
 function(physinv_layers name)
   add_library(physinv_${name} INTERFACE)
   set_target_properties(physinv_${name} PROPERTIES EXPORT_NAME ${name})

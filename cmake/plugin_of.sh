@@ -11,7 +11,7 @@ find_plugin() {
     case $argument in
       --filter=libraries | --filter=libraries/* | --filter=^libraries/* | \
         --filter=studies/whose-bfgs* | --filter=^studies/whose-bfgs*)
-        # shellcheck disable=SC2034 # read by who calls this
+        # shellcheck disable=SC2034 # read by the caller
         plugin=libraries ;;
     esac
   done

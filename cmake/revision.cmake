@@ -1,5 +1,5 @@
 # physinv_revision(<target> <name> <root> <folder>): gives the target a source
-# that tells from which revision of the sources in <root> it is linked, under a
+# that says from which revision of the sources in <root> it is linked, under a
 # name (suite/harness/revision.h). <folder>/revision.cpp is looked at when git
 # moved or a tracked file was written, and rewritten only when its content
 # changes: a commit compiles this source and links, nothing else.

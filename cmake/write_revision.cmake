@@ -1,6 +1,6 @@
-# Writes ${folder}/revision.cpp, which tells the revision of the sources in
-# ${root} under ${name}, and revision.d naming what it depends on: where git
-# stands, and every tracked file.
+# Writes ${folder}/revision.cpp, which has the revision of the sources in
+# ${root} under ${name}, and revision.d naming what it depends on: git's present
+# commit, and every tracked file.
 cmake_minimum_required(VERSION 3.25)
 
 # Output of git, nothing if it fails or is not there.

@@ -3,8 +3,8 @@
 # evaluated and a `value` of another point, if its last line search finds no lower point:
 # here on a parabola with its exact gradient. Its manual says of `value`: "The value of
 # 'fn' corresponding to 'par'". The points differ in the last digits alone, where the
-# search gives up, but who compares `value` with fn(par), or looks up what was computed
-# at `par`, finds nothing.
+# search gives up, but a caller that compares `value` with fn(par), or looks up what
+# was computed at `par`, finds nothing.
 #
 # Seen on 2026-11-28:
 #   par was evaluated: FALSE, fn(par) is value: FALSE, convergence: 0

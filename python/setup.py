@@ -2,7 +2,7 @@
 builds in the checkout around it.
 
 The build tree is that of ./bench for Debian's Python, one of its own for
-another, or what PHYSINV_BUILD names. Nothing is written beside the sources.
+another, or what PHYSINV_BUILD names. Nothing is written among the sources.
 """
 
 import os
@@ -64,7 +64,7 @@ class CMakeBuild(build_ext):
         run("cmake", "--install", tree, "--component", "programs", "--strip",
             "--prefix", module.parent)
         for program in (module.parent / "bin").iterdir():
-            if program.name != "physinv-bench":  # for who builds the suite
+            if program.name != "physinv-bench":  # for those who build the suite
                 program.unlink()
 
 

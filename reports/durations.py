@@ -3,7 +3,7 @@
   python3 reports/durations.py PROGRAM [--check]
 
 writes reports/published/durations.csv; with --check it only compares that file
-with the campaigns, and says how many stages it tells within a factor of two.
+with the campaigns, and says how many stages it predicts within a factor of two.
 """
 
 import csv
@@ -22,7 +22,7 @@ TABLE = os.path.join(HERE, "published", "durations.csv")
 COLUMNS = ["experiment", "method", "stage", "n", "operations", "seconds",
            "least", "most", "bytes"]
 UNITS = {"s": 1, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
-# What is over at once tells of starts, not of operations.
+# What is over at once measures starts, not operations.
 SHORTEST = 0.02
 
 
@@ -89,7 +89,7 @@ def told(found, key, others):
 
 
 def shares(found):
-    """Of all stored stages, and of those told by others' rows alone."""
+    """Of all stored stages, and of those predicted by others' rows alone."""
     kinds = {}
     for key in found:
         kinds.setdefault(key[:3], []).append(key)

@@ -60,7 +60,7 @@ def ended(stage):
 
 
 def rows(results, methods):
-    """A row for each landscape and way to end, with those who ended so."""
+    """A row for each landscape and way to end, with the methods that ended so."""
     for landscape, of in stages(results).items():
         words, groups = surprises(results, landscape), {}
         for method in methods:

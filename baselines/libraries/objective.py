@@ -26,7 +26,7 @@ class Objective:
         return loss, gradient
 
     def accept(self, x):
-        """x is the library's new iterate; what is beyond its limit is not told."""
+        """x is the library's new iterate; what is beyond its limit is not reported."""
         if x.tobytes() in self.seen and self.steps <= self.run.iterations:
             self.run.accept(self.i, self.steps, x, self.seen[x.tobytes()][0])
             self.steps += 1
@@ -34,7 +34,7 @@ class Objective:
     def end(self, x, loss, status, message):
         """What the library returned, and what it called it: x, status, message
         and the arrays that the plug-in's solvers leave. x that was not evaluated
-        is; x that is not finite is no result: the problem ends at its start."""
+        is; x that is not finite is not a result: the problem ends at its start."""
         if np.isfinite(x).all() and x.tobytes() not in self.seen:
             self(x)
         at, left = self.seen.get(x.tobytes(), (np.nan, np.nan))

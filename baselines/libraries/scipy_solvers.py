@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""SciPy's minimizers, and R's, beside those of the plug-in of other libraries:
+"""SciPy's minimizers, and R's, with those of the plug-in of other libraries:
 
     PYTHONPATH=build/release/python baselines/libraries/scipy_solvers.py \\
         build/release/libraries.so quick filter=^libraries/billiards/

@@ -8,7 +8,7 @@ namespace pendulum {
 namespace {
 
 /// The oracle hides the solutions and counts; the probe keeps the clock and
-/// measures the curve while it stands still.
+/// measures the curve while it is stopped.
 Outcome solve(const MomentumOptions& options, StageRun& run) {
   Batch<double> x = run.oracle.start(),
                 v = Batch<double>::Zero(x.rows(), x.cols()),

@@ -1,6 +1,6 @@
-"""An optimizer of one's own on the billiards of the JPO paper: SciPy's BFGS from the best
+"""Your own optimizer on the billiards of the JPO paper: SciPy's BFGS from the best
 of 64 random shots, as a method of the campaign. In how many problems does it end below
-BFGS from the paper's start, beside what the paper prints (own_optimizer.svg)?"""
+BFGS from the paper's start, compared with what the paper prints (own_optimizer.svg)?"""
 import numpy as np, scipy
 from matplotlib import pyplot
 import physinv

@@ -1,4 +1,4 @@
-"""A problem of one's own in PyTorch: a damped pendulum is seen eight times; how did it
+"""Your own problem in PyTorch: a damped pendulum is seen eight times; how did it
 start, and how strong is the damping? Runs eight methods on it and prints their table
 (the page: own_problem/report/index.html)."""
 import sys

@@ -35,11 +35,11 @@ Campaigns, which physinv-bench runs and this package reads:
     r = physinv.run("smoke", filter="jpo/billiards", out="results/smoke")
     r = physinv.open("results/smoke")      # one that was run before
     r.stages(), r.examples(case), r.curve(case), r.tidy(), r.plot("fig4a")
-    physinv.compare("results/smoke")       # its methods beside each other
+    physinv.compare("results/smoke")       # compares its methods
     physinv.compare("results/a", "results/b")
     physinv.published("jpo/billiards")     # what the paper prints
 
-A method of one's own, as a case like any other:
+Your own method, as a case like any other:
 
     @physinv.method("momentum", experiments="jpo/*", needs="vjp")
     def solve(run):
@@ -52,7 +52,7 @@ A method of one's own, as a case like any other:
 
     physinv.run("smoke", filter="jpo/billiards/(bfgs|momentum)")
 
-A problem of one's own, as an experiment like any other (help(physinv.Problem)):
+Your own problem, as an experiment like any other (help(physinv.Problem)):
 
     @physinv.experiment("decay")
     class Decay(physinv.Problem):
@@ -106,7 +106,7 @@ def problems():
 
 def arrays():
     """What stages leave in examples(...)["arrays"]: dicts of name, axes (of the
-    case's file), unit, meaning, and the array beside which a name means this."""
+    case's file), unit, meaning, and the array with which a name means this."""
     return _core.arrays()
 
 
@@ -157,7 +157,7 @@ def torch(problem):
 
 def jax(problem):
     """F as a function of JAX arrays, (x, given=None) -> y, for jit and grad, by
-    pure_callback. A gradient by x linearizes anew, as JAX keeps arrays and no
+    pure_callback. A gradient by x linearizes again, as JAX keeps arrays and no
     tapes: two forward passes and one pullback. float64 takes jax_enable_x64.
     Second derivatives are an error, and a derivative by given is one."""
     from physinv._jax import differentiable

@@ -60,7 +60,7 @@ def published(experiment):
 
 
 def _published_folder():
-    """Beside the program, or in the checkout that a build tree links to."""
+    """In the folder of the program, or in the checkout that a build tree links to."""
     installed = pathlib.Path(program()).parent.parent / "share/physinv/published"
     sources = pathlib.Path(__file__).resolve().parents[2] / "reports/published"
     return installed if installed.is_dir() else sources
@@ -162,7 +162,7 @@ def run(profile="quick", out=None, **flags):
 
 
 def open(directory):
-    """Results of a campaign, which may be under way."""
+    """Results of a campaign, which may be running."""
     return Results(directory)
 
 
@@ -176,7 +176,7 @@ class Results:
 
     def stages(self):
         """A dict for every finished stage: case, experiment, method, n, seed,
-        stage, stop, iterations, seconds (None where it came to no result)."""
+        stage, stop, iterations, seconds (None where it has no result)."""
         return self._results._stages()
 
     def examples(self, case, stage=""):

@@ -43,7 +43,7 @@ def methods_of(results):
 
 
 def _row(results, key, stages):
-    """Numbers of all seeds, None where no seed came to a result; a problem
+    """Numbers of all seeds, None where no seed has a result; a problem
     without a finite loss, or of a run that failed, has an infinite one."""
     ended = [s for s in stages if s["stop"] not in ("failed", "skipped")]
     each = [results.examples(s["case"], s["stage"]) for s in ended]

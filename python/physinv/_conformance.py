@@ -155,7 +155,7 @@ def _vjp_returns_the_y_of_forward(functions):
 
 
 def _difference(functions, x, given, x_dot, step):
-    """J x_dot, and where it does not hang on the step: no kink is near."""
+    """J x_dot, and where it does not depend on the step: no kink is near."""
     def by(h):
         return (_forward(functions, x + h * x_dot, given)
                 - _forward(functions, x - h * x_dot, given)) / (2 * h)

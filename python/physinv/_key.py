@@ -49,8 +49,7 @@ def digest_of(data):
 
 
 class Walk:
-    """Visits objects and says words of them, from which they could be told
-    apart."""
+    """Visits objects and writes words that distinguish them."""
 
     def __init__(self, numbers=None, path=()):
         self.words = []
@@ -116,7 +115,7 @@ class Walk:
         return False
 
     def _put(self, value):
-        # By type(), as what stands in for another object has its __class__.
+        # By type(), as what replaces another object has its __class__.
         kind = type(value)
         if kind in PLAIN:
             self.say(kind.__name__, hex(value) if kind is int else repr(value))

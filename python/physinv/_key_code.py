@@ -29,7 +29,7 @@ _READING = {"open", "read_text", "read_bytes"}  # of pathlib.Path, gzip, ...
 
 
 def forbid(walk, value):
-    """Refuses functions that find what no name in the code tells."""
+    """Refuses functions that find what no name in the code shows."""
     for module, name, why in _REFUSED:
         there = sys.modules.get(module)
         if there is not None and value is vars(there).get(name, walk):

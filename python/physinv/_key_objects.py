@@ -108,7 +108,7 @@ def _slots(value):
 
 
 def _put_instance(walk, value):
-    """Of a class of the user's: class, attributes, and what it is beside."""
+    """Of a class of the user's: class, attributes, and what else it is."""
     walk.say("instance")
     cls = type(value)
     walk.visit(cls, cls.__name__)

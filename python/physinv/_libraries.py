@@ -1,7 +1,7 @@
 """What is a library's and what is the user's own, and versions of libraries.
 
-A library is Python's own, this package, or what stands in a folder
-site-packages or dist-packages and has a version. All else is the user's."""
+A library is Python's own, this package, or what is in a folder
+site-packages or dist-packages and has a version. Everything else is the user's."""
 
 import functools
 import importlib.metadata
@@ -78,7 +78,7 @@ def _library_of(name):
 
 
 def named(module, qualified):
-    """What stands in a module under a qualified name, None if nothing does."""
+    """What a module has under a qualified name, None if nothing does."""
     value = sys.modules.get(module)
     for part in qualified.split("."):
         value = getattr(value, part, None)
@@ -86,7 +86,7 @@ def named(module, qualified):
 
 
 def is_users(value):
-    """Whether what stands in a library was put there by the user's code."""
+    """Whether what is in a library was put there by the user's code."""
     kind = type(value)
     if kind is types.FunctionType:
         path = value.__code__.co_filename

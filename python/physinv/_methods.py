@@ -156,23 +156,23 @@ def method(name, experiments="*", needs="vjp", iterations=1000, **options):
 
     It sees what a method of the suite sees: problems without their solutions,
     calls counted, its budget. It returns x, or x and a dict: status, iterations
-    and evaluations per example, of which the latter two stand beside what was
-    counted, as arrays claimed_iterations and so on; message, a text; arrays, a
-    dict of numbers per example, which are stored. An exception fails its stage, and
-    the campaign goes on. `physinv.run` has it in every profile, on the n and
-    seeds of its rows.
+    and evaluations per example, of which the latter two are stored next to what was
+    counted, as arrays claimed_iterations and so on; message, a text; arrays, a dict of
+    numbers per example, which are stored. An exception fails its stage, and the
+    campaign continues. `physinv.run` has it in every profile, on the n and seeds of its
+    rows.
 
     The key of its results has the method's name, the hash of its code and of
     all that it refers to, transitively (globals, variables of enclosing
     functions, decorators, defaults, classes, modules of the user's own), the
     versions of Python and of the libraries among it, and the options, which the
     function does not see: data="grid-2" names what the code does not refer to,
-    such as a file. It is made anew whenever physinv.run or physinv.verb is
+    such as a file. It is made again whenever physinv.run or physinv.verb is
     called. docs/python.md says what is followed and what is refused.
 
-    ValueError for a name that is not in [a-z0-9_-], a budget that is no whole
-    number from 1 on, what cannot be called, and what cannot be followed;
-    TypeError for an option that has no lasting text."""
+    ValueError for a name that is not in [a-z0-9_-], a budget that is not a whole number
+    of at least 1, what cannot be called, and what cannot be followed; TypeError for an
+    option that has no lasting text."""
     budget = _check(name, experiments, needs, iterations, options)
     needs = [needs] if isinstance(needs, str) else sorted(needs)
 

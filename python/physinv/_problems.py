@@ -26,7 +26,7 @@ class Problem:
                 return x[:, :1] * np.exp(-x[:, 1:] * TIMES)
 
     Arrays are (n, features) of float64, a batch a call, and a sample's numbers
-    depend on no other sample. What a problem can do beside that are methods:
+    depend on no other sample. Optional abilities are methods:
 
         vjp(x, given) -> y, pullback       pullback(y_bar) = J^T y_bar
         jvp(x, given, x_dot) -> y_dot      J x_dot; needs vjp or jacobian

@@ -1,5 +1,5 @@
 """Threads of OpenMP (PyTorch, SciPy's BLAS, ...) where methods run in workers,
-which are forks: the threads of the parent are not in a child, and who waits for
+which are forks: the threads of the parent are not in a child, and code that waits for
 them there waits for ever."""
 
 import ctypes
