@@ -14,8 +14,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Layer {
-  std::set<std::string> layers;     // besides itself
-  std::set<std::string> libraries;  // besides the standard one and fmt
+  std::set<std::string> layers;     // in addition to itself
+  std::set<std::string> libraries;  // in addition to the standard one and fmt
 };
 
 const std::map<std::string, Layer> kLayers{

@@ -90,7 +90,7 @@ std::string types_of(const Tokens& t, std::size_t from, std::size_t to) {
   return all;
 }
 
-/// What the tokens before a '{' define that may stand in several objects: "" if
+/// What the tokens before a '{' define that may be in several objects: "" if
 /// nothing of that kind.
 std::string defined_by(const Tokens& head) {
   std::size_t i = 0;
@@ -195,7 +195,7 @@ std::set<std::string> definitions(const Tokens& t, int* unnamed = nullptr) {
     } else {
       add(defined_by(head));
       add(inline_variable(head));
-      // A function's initializers in braces go on.
+      // A function's initializers in braces continue.
       i = behind(t, i) - 1;
       if (i + 1 >= t.size() || (t[i + 1] != "," && t[i + 1] != "{"))
         head.clear();

@@ -1,6 +1,6 @@
 // What the folders of experiments define, the table of all that is written from
-// them calls by its name: another name would be an experiment that nobody
-// misses.
+// them calls by its name: another name would be an experiment that is left out
+// unseen.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -83,7 +83,7 @@ TEST(Registration, AFunctionOfAnotherNameIsFound) {
   fs::remove_all(paper);
 }
 
-/// Nothing of the suite's registers by itself.
+/// No source of the suite registers by itself.
 TEST(Registration, NothingRegistersWhenItIsLoaded) {
   const std::regex by_itself("register_(experiment|overview|claims|report)\\(");
   for (const auto& file : fs::recursive_directory_iterator(

@@ -1,5 +1,5 @@
 // Every condition of every claim can fail and can hold: on campaigns that are
-// made up from the records of the smoke profile, with all numbers drawn anew,
+// made up from the records of the smoke profile, with all numbers drawn again,
 // and then perturbed. What none of them turns is listed with its reason.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -285,7 +285,7 @@ class Untold {
   }
 
   bool none() const { return left_.empty(); }
-  /// What can fail is known to hang on what was measured.
+  /// What can fail is known to depend on what was measured.
   void leave_what_failed() {
     std::erase_if(left_, [&](const Entry& e) { return seen_[e.name].failed; });
   }
@@ -339,7 +339,7 @@ void look(const Asked& asked,
   }
 }
 
-/// What every condition comes to on three campaigns, its cause's included, a
+/// The result of every condition on three campaigns, its cause's included, a
 /// line each: the same before and after an edit of claims that changes none.
 void print_values(const Asked& asked,
                   const std::vector<const Variants*>& cases,
@@ -402,7 +402,7 @@ bool print(const std::string& of, const std::map<std::string, Seen>& seen) {
   return unknown == 0;
 }
 
-/// In a process of its own, which may crash on numbers that nobody recorded.
+/// In a process of its own, which may crash on numbers that no run recorded.
 bool apart(const Asked& asked,
            const std::vector<const Variants*>& cases,
            const Models& models,

@@ -91,9 +91,9 @@ bool own_losses(const StageRecord& r) {
   return option(r.options, "algorithm") != "training";
 }
 
-/// Runs of every stage: one that lays its state down after `update` updates,
-/// where it did, one that goes on from there, and one with three threads, in
-/// which what follows the first stage goes on from its record.
+/// Runs of every stage: one that saves its state after `update` updates, where
+/// it did, one that continues from there, and one with three threads, in which
+/// what follows the first stage continues from its record.
 struct Runs {
   std::vector<StageRecord> first, second, threaded;
   std::vector<bool> restored;
@@ -141,7 +141,7 @@ Runs run_thrice(const Case& c, Index update) {
   return all;
 }
 
-/// Trainings can be long: they go on from the middle.
+/// Trainings can be long: they continue from the middle.
 bool trains(const StageRecord& r) {
   return r.stage == "fit" && r.iterations == 5 &&
          !option(r.options, "step").empty();

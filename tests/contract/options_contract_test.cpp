@@ -149,7 +149,7 @@ struct Others {
   }
   std::vector<std::shared_ptr<Answers>> operator()(
       const std::shared_ptr<Answers>&) const {
-    return {};  // found once or anew, the same
+    return {};  // found once or again, the same
   }
 
  private:
@@ -324,8 +324,8 @@ void diagnostics() {
       "TinyNetOptions", NoisyAlignment{.network = TinyNetOptions{}}, alignment);
 }
 
-// Of options that code makes of others, and says nothing of; and of those that
-// stand inside of options above.
+// Of options that code makes of others, and says nothing of; and of those
+// inside options above.
 const std::set<std::string> kOthers = {"AdadeltaOptions",
                                        "AdagradOptions",
                                        "AdamOptions",

@@ -181,7 +181,7 @@ TEST_P(ProblemContract, PushforwardIsTheTransposeOfPullback) {
                   double(x_bar.col(i).dot(x_dot.col(i))),
                   Tolerance<T>::relative *
                       double(y_dot.col(i).norm() * y_bar.col(i).norm()));
-    // Who has this has half the squared error as its loss.
+    // A problem with this has half the squared error as its loss.
     Batch<T> slope(y_dot), moved(y_dot);
     b.problem->loss_gradient(l.y, l.y, slope);
     b.problem->loss_gradient(l.y + y_dot, l.y, moved);
@@ -288,7 +288,7 @@ TEST_P(ProblemContract, InverseLowersTheLossAndColumnsAreIndependent) {
     Vector<double> before(kCount), after(kCount);
     b.problem->loss(b.forward(guess, l.given), l.y, before);
     // Near an extremum of a sine as flat as the line the limit lets a step
-    // overshoot; its direction is that of descent all the same.
+    // overshoot; its direction is still that of descent.
     const T part = GetParam()->name == "sip/sine-xi1-gamma1" ? T(0.1) : T(1);
     const Batch<T> there = part == 1 ? x : Batch<T>(guess + part * (x - guess));
     b.problem->loss(b.forward(there, l.given), l.y, after);

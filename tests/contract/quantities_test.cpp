@@ -1,4 +1,4 @@
-// Names of what stands in the columns of problems' arrays, against the shapes.
+// Names of the columns of problems' arrays, against the shapes.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -193,7 +193,7 @@ TEST(Skip, FeaturesAndConstantRowsOfTheNetwork) {
   EXPECT_EQ(model.counts()[Counter::skipped_rows], u64(kPasses * 24 * kCount));
 }
 
-// Nobody needs the gradient at the last iterate. The losses of a longer run
+// The gradient at the last iterate is not needed. The losses of a longer run
 // show what a gradient there would have changed: nothing.
 TEST(Skip, TheGradientAtTheLastEstimateOfJpo) {
   const auto jpo = jpo_fit();

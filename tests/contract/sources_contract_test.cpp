@@ -105,7 +105,7 @@ TEST(SourcesContract, FilesOfMetricsAreReached) {
 
 /// An implementation that has not its header's name would be forgotten.
 TEST(SourcesContract, NoSourceIsForgotten) {
-  // Powers of ten and what texts say are settings, which stand in the keys
+  // Powers of ten and what texts say are settings, which are in the keys
   // themselves.
   const Names exceptions = {"suite/core/decimal.h",
                             "suite/core/power_of_ten.h"};
@@ -267,7 +267,7 @@ std::map<std::string, Names> compiled_dependencies(const Names& sources) {
   for (std::string word; words >> word;) {
     if (word.ends_with(":"))
       headers = nullptr;
-    else if (word == "\\")  // the line goes on
+    else if (word == "\\")  // the line continues
       continue;
     else if (headers == nullptr)
       headers = &all[word];

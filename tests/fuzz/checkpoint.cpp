@@ -25,8 +25,7 @@ void checkpoint(std::string_view bytes) {
   static const Case small = small_case();
   static Threads threads(1);
   put("checkpoints/" + small.info.keys[0], sealed_front(bytes));
-  // Whatever stands there, the stage comes to its end, if need be from its
-  // start.
+  // Whatever is there, the stage reaches its end, if need be from its start.
   run_case(small,
            {},
            {.checkpoints = {.store = folder(), .seconds = 1e9}},

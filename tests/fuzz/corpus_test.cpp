@@ -1,5 +1,5 @@
 // Every input of the corpus, as the fuzzers feed it: seeds, and what once
-// crashed, hung or ended in an error that nobody documents.
+// crashed, hung or ended in an error that is not documented.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 

@@ -1,5 +1,5 @@
 // The HDF5 file of one case, its checksum taken as right: what is read is what
-// stands in front of it.
+// comes before it.
 #include <fmt/format.h>
 
 #include "suite/store/case_file.h"

@@ -1,7 +1,7 @@
 /// The readers that fuzzers feed, each over bytes that stand for what it reads.
 ///
 /// Where a reader checks a checksum, one of zeros is made right first, so that
-/// what stands behind it is reached, too.
+/// what follows it is reached, too.
 ///
 /// They return, whatever the bytes are: an exception, a crash, a hang or too
 /// much memory is a finding.

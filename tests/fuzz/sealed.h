@@ -7,7 +7,7 @@ namespace physinv::fuzz {
 
 /// A journal: each line has its own.
 std::string sealed_lines(std::string_view bytes);
-/// A checkpoint: it stands first, over the rest.
+/// A checkpoint: it comes first, over the rest.
 std::string sealed_front(std::string_view bytes);
 /// A plan: one of its values, over the others.
 std::string sealed_plan(std::string_view bytes);

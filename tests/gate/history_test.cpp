@@ -118,7 +118,7 @@ TEST(History, WhatFailsIsCountedAndMakesNothingLowerOrFaster) {
     EXPECT_EQ(cells[4].ours, 1) << stop;
     EXPECT_EQ(cells[6].ours, 1) << stop << ": other losses";
   }
-  // The median of the others alone is no lower loss.
+  // The median of the others alone is not a lower loss.
   const auto some = history_of(
       {good, ended("stop=iterations loss=0.1,0.2,0.3 nonfinite=2 ms=4..5")});
   EXPECT_EQ(last_of(some[0].figures[0]), 1);

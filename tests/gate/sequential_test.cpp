@@ -16,7 +16,7 @@ namespace {
 constexpr double kAlpha = 0.01, kMargin = 0.02;
 
 /// log(second / first) of two runs that take `noise` more or less, one pair in
-/// ten with a disturbance ten times that, whoever is hit; `slowdown` on top.
+/// ten with a disturbance ten times that, of either run; `slowdown` on top.
 double pair(Stream& random, double noise, double slowdown) {
   const auto run = [&] {
     const double own = noise * random.normal() / std::sqrt(2.0);
@@ -141,7 +141,7 @@ TEST(Sequential, PowerOverRunTime) {
   EXPECT_LE(found(40, 0.03), 0.07);
 }
 
-/// Two programs that take what they are told to.
+/// Two programs that take as long as the test says.
 TEST(PairedTiming, TellsWhoIsSlower) {
   PairedTimingOptions options{.base = "base",
                               .head = "head",

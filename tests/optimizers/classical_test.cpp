@@ -139,7 +139,7 @@ TEST(Classical, AStartThatIsNotFiniteStaysWithItsStatus) {
     if (!refines) continue;
     EXPECT_EQ(out.x(0, 2), 6);
     EXPECT_EQ(out.stop, Stop::iterations);
-    // No number was measured, so none may stand in the curve.
+    // No number was measured, so none may be in the curve.
     const Curve& curve = bench.probe.curve();
     EXPECT_TRUE(curve.loss.row(2).array().isNaN().all());
     EXPECT_TRUE(Batch<double>(curve.loss.row(3)).allFinite());

@@ -239,7 +239,7 @@ void check_adahessian(const Json& entry) {
       seen << out.template cast<double>().sum(),
           out.template cast<double>().norm(), at.signal.objective(),
           out.col(0).head(first).template cast<double>();
-      // A sum of many numbers is no more exact than they are.
+      // A sum of many numbers is not more exact than they are.
       const double scale =
           std::is_same_v<T, float> ? 5e-3 * std::sqrt(double(out.size())) : 0;
       for (Index i = 0; i < seen.size(); ++i)

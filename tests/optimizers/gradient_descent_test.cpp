@@ -57,7 +57,7 @@ TEST(GradientDescent, SkippingZeroGradientsChangesNothing) {
     return gd;
   };
   Billiards flat = table(n);
-  flat.balls.row(1).setConstant(0.02);  // nobody is hit
+  flat.balls.row(1).setConstant(0.02);  // no problem is hit
   for (const Billiards& problem : {table(n), flat}) {
     for (const Index maxiter : {0, 1, 3, 50, 300}) {
       const GradientDescent with = run(true, maxiter, problem, cue(n));
@@ -204,7 +204,7 @@ TEST(GradientDescent, AStartWithoutAGradientHasItsLoss) {
   EXPECT_EQ(gd.x()(0), 3);
   EXPECT_EQ(gd.iterations()[0], 0);
   EXPECT_EQ(gd.evaluations()[0], 1);
-  // Others go on as if it were not there.
+  // Others continue as if it were not there.
   EXPECT_EQ(gd.status()[1], Status::gtol);
   drive(
       alone,

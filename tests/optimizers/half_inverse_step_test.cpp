@@ -58,7 +58,7 @@ void expect_scaled(const hig::Power& power,
   EXPECT_NEAR(there.s_max / size, here.s_max, near * here.s_max);
 }
 
-// 27 parameters: few rows go by way of J J^T, many by J itself.
+// 27 parameters: few rows are solved by J J^T, many by J itself.
 TEST(HalfInverseStep, JacobiansAtExtremesOfScale) {
   for (const hig::Power power : {hig::Power{.kappa = -0.5, .tau = 1e-4},
                                  hig::Power{.kappa = -1, .tau = 1e-4},

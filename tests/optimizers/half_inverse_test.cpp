@@ -249,7 +249,7 @@ TEST(HalfInverse, WaysBackThatAreGivenUpChangeNoBit) {
   EXPECT_GT(fell, 0);
 }
 
-// A cut beside a value that only the refined spectrum knows to be so near.
+// A cut next to a value that only the refined spectrum shows to be so near.
 TEST(HalfInverse, RangesThatAreGivenUpAreCountedAndLeaveNothing) {
   const Index m = 60, p = 90;
   const Batch<double> j = graded(m, p, 8, 70);

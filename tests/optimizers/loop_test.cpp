@@ -155,8 +155,8 @@ TEST(Loop, AnotherSignalIsOneFunction) {
     EXPECT_LT(batch(batch.size() - 1), 0.05 * batch(0));
   }
 
-  // Jacobians follow; a rule that wants products with second derivatives is
-  // told that there are none.
+  // Jacobians follow; a rule that wants products with second derivatives gets
+  // an error that there are none.
   options.rule = HalfInverseStepOptions{};
   const auto other = train(options);
   StageBench bench(*other, kProblems, 1);

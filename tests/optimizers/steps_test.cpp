@@ -77,7 +77,8 @@ TYPED_TEST(StepsTest, SgdFollowsTheFormula) {
   }
 }
 
-/// Steps `rule` twenty times beside `formula(g, x)` on each number, in double.
+/// Compares twenty steps of `rule` with `formula(g, x)` on each number, in
+/// double.
 template <class T, class Formula>
 void expect_formula(const StepOptions& options, double tol, Formula make) {
   const Index n = 13;
@@ -125,7 +126,7 @@ TYPED_TEST(StepsTest, AdadeltaFollowsTheFormula) {
   });
 }
 
-/// Equal numbers take equal steps wherever they stand, also unaligned.
+/// Equal numbers take equal steps wherever they are, also unaligned.
 template <class T, class Rule>
 void expect_place_does_not_matter(Rule make) {
   for (const Index offset : {0, 1, 3}) {

@@ -226,7 +226,7 @@ TEST(Training, ARowSetsTheLengthUnlessTheStageKeepsItsOwn) {
   EXPECT_EQ(train(options)->default_iterations(), 7);
 }
 
-// A recipe that takes long to make: it is made anew for every draw.
+// A recipe that takes long to make: it is made again for every draw.
 /// Draws for two milliseconds.
 template <class T>
 class SlowToDraw final : public GradientQuadratic<T> {

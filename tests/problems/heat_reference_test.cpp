@@ -118,7 +118,7 @@ Vector<double> start_of(const Json& in, Index cells) {
     return Vector<double>(Vector<double>::NullaryExpr(
         cells, [&](Index k) { return factor * u(k); }));
   };
-  if (in.contains("a")) scaled_u(0);  // read, even where nobody needs it
+  if (in.contains("a")) scaled_u(0);  // read, even where it is not needed
   if (!in.contains("x0") || in.at("x0") == "zero" || in.at("x0") == "zeros" ||
       in.at("x0") == "0" || in.at("x0") == 0)
     return Vector<double>::Zero(cells);

@@ -37,7 +37,7 @@ Samples<double> problems_of(const Json& entry) {
 /// The inverse problems that several entries speak about, by column.
 Samples<double> problems() { return problems_of(spoken_of(kId, "problems")); }
 
-/// As many cells as the states have; all else is the specification's.
+/// As many cells as the states have; everything else is the specification's.
 KuramotoSivashinskyOptions options_on(Index cells) { return {.cells = cells}; }
 
 template <class T>

@@ -260,7 +260,7 @@ TYPED_TEST(KuramotoSivashinskyIn, ZeroCotangentsNeedNoWayBack) {
   const Batch<T> zero = Batch<T>::Zero(128, 2);
   EXPECT_EQ(b.pull(s.x, s.given, zero), Batch<T>::Zero(130, 2));
   EXPECT_EQ(b.work.counts[Counter::skipped_vjp], 4U);  // pulled twice
-  // Beside another the way back is one for both, and the value is the same.
+  // Next to another the way back is one for both, and the value is the same.
   Batch<T> one = zero;
   one(5, 1) = 1;
   const Batch<T> pulled = b.pull(s.x, s.given, one);
@@ -344,7 +344,7 @@ TEST(KuramotoSivashinsky, DivergedSamplesAreNotSteppedOn) {
   problem.pullback(tape, s.y, x_bar, work);
   EXPECT_TRUE(x_bar.array().isNaN().all());
   EXPECT_EQ(work.counts[Counter::skipped_vjp], static_cast<std::uint64_t>(n));
-  // The register of one that lives goes on, the others do not.
+  // The register of one that lives continues, the others do not.
   x(1, 1) = 1;
   work.counts = {};
   problem.forward(x, s.given, y, work);
@@ -396,7 +396,7 @@ TEST(KuramotoSivashinsky, SamplesHaveTheirDistribution) {
       power(m) += std::norm(sum);
     }
   }
-  // Amplitudes fall as 1 / m^2. A sample's deviation hangs on its modes 1 and
+  // Amplitudes fall as 1 / m^2. A sample's deviation depends on its modes 1 and
   // 2 and divides them all, so only the others are compared.
   for (Index m = 4; m < 8; ++m)
     EXPECT_NEAR(power(m) / power(3) * std::pow(double(m) / 3, 4), 1, 0.15) << m;

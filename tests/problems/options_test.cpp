@@ -1,5 +1,5 @@
-// Options that no problem can have are refused by name: what is no number, and
-// in float what is infinite or 0 there.
+// Options that no problem can have are refused by name: what is not a number,
+// and in float what is infinite or 0 there.
 #include <gtest/gtest.h>
 
 #include <functional>

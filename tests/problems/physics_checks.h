@@ -1,4 +1,4 @@
-/// Properties every problem with a full Jacobian has, on inputs of one's own.
+/// Properties every problem with a full Jacobian has, on given inputs.
 #pragma once
 
 #include <gtest/gtest.h>

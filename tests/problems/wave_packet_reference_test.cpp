@@ -25,7 +25,7 @@ Batch<double> signals() {
   return columns(spoken_of(kId, "observations").at("y"));
 }
 
-/// As many samples as the signals have; all else is the specification's.
+/// As many samples as the signals have; everything else is the specification's.
 WavePacketOptions options_of(Index samples) { return {.samples = samples}; }
 
 double xi_of(double t0) {

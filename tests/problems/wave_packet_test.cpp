@@ -52,7 +52,7 @@ Vector<double> losses(const Batch<T>& y, const Batch<T>& target) {
   return loss;
 }
 
-/// u and du/dxi as the formulas stand.
+/// u and du/dxi as in the formulas.
 double formula(double t, double xi, const WavePacketOptions& o = {}) {
   const double d = t - (o.centre + o.scale * xi);
   return o.amplitude * std::cos(o.frequency * d + o.phase) *
@@ -224,7 +224,7 @@ TYPED_TEST(WavePacketIn, FarAwayThereIsExactlyNothing) {
   EXPECT_TRUE(same_bits(signals(x, r), r));
 }
 
-/// Whoever pushed the packet out has the same loss, to the last bit.
+/// Whatever pushed the packet out, the loss is the same, to the last bit.
 TYPED_TEST(WavePacketIn, LossesWithoutPacketAreEqual) {
   using T = TypeParam;
   Batch<T> x(1, 6);

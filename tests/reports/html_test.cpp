@@ -24,7 +24,7 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-// What stands between the first two marks after `from`.
+// What is between the first two marks after `from`.
 std::string between(const std::string& text,
                     const std::string& from,
                     const std::string& to) {

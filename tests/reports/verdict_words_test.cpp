@@ -1,4 +1,4 @@
-// A verdict has one word in every output, whoever made it.
+// A verdict has one word in every output.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

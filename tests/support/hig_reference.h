@@ -36,7 +36,7 @@ class TwoNorm {
   testing::AssertionResult operator()(double a, double b) const;
 
   /// A vector of which the file stores length, norm, every stride-th entry
-  /// and a dot product; the last is held against the length of the vector.
+  /// and a dot product; the last is compared with the length of the vector.
   template <class A>
   testing::AssertionResult summary(const Eigen::MatrixBase<A>& a,
                                    const Json& stored) const {
@@ -53,7 +53,7 @@ class TwoNorm {
   double rel_, abs_;
 };
 
-/// The limits of one entry; forms nobody here knows are an error.
+/// The limits of one entry; unknown forms are an error.
 class HigTolerance {
  public:
   explicit HigTolerance(const Json& entry);

@@ -1,6 +1,6 @@
 /// A value of a reference file that remembers which of its keys were asked
-/// for, so that a test can fail on those nobody reads. Numbers that JSON lacks
-/// are null (NaN) or the words "nan", "inf" and "-inf".
+/// for, so that a test can fail on those that nothing reads. Numbers that JSON
+/// lacks are null (NaN) or the words "nan", "inf" and "-inf".
 #pragma once
 
 #include <array>
@@ -95,10 +95,10 @@ class Json {
   Iterator begin() const { return {this, 0}; }
   Iterator end() const { return {this, is_array() ? size() : 0}; }
 
-  /// Keys below this value that nobody has asked for; words for the reader of
-  /// the file (description, why, ...) do not count.
+  /// Keys below this value that were not read; words for the reader of the file
+  /// (description, why, ...) do not count.
   std::vector<std::string> unread() const;
-  /// Where this value stands: expected.steps[2].loss
+  /// The path of this value: expected.steps[2].loss
   std::string path() const;
 
   friend bool operator==(const Json& a, const Json& b) {

@@ -1,4 +1,4 @@
-/// A problem on samples of one's own, whatever set is asked for.
+/// A problem on given samples, whatever set is asked for.
 #pragma once
 
 #include <utility>

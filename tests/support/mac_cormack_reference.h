@@ -83,7 +83,7 @@ inline void expect_near(const Batch<double>& got,
           << what << " (" << i << ", " << j << ")";
 }
 
-/// What the file allows in double, and float's own rounding besides.
+/// What the file allows in double, and float's own rounding.
 template <class T>
 struct FileTolerance {
   explicit FileTolerance(const Json& entry, double single = 2e-5)
@@ -123,7 +123,7 @@ void check_mac_cormack(const Json& entry) {
   near(a.of(a.f_bar), rows(out.at("field_bar")), "field_bar");
   near(a.of(a.x_bar), rows(out.at("vx_bar")), "vx_bar");
   near(a.of(a.y_bar), rows(out.at("vy_bar")), "vy_bar");
-  // r is nobody's to keep: the free output is s + (f - r) / 2.
+  // r need not be kept: the free output is s + (f - r) / 2.
   const Batch<double> r = alike(out.at("back_and_forth"));
   const Batch<double> free = a.of(a.s) + 0.5 * (f - r);
   near((a.limited().array() == 0).select(a.of(a.out), free), free, "r");

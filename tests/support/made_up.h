@@ -1,5 +1,5 @@
 /// Campaigns that are made up from the records of the smoke profile: every case
-/// of all profiles, with its numbers drawn anew around those that were run.
+/// of all profiles, with its numbers drawn again around those that were run.
 #pragma once
 
 #include <cstdint>

@@ -53,7 +53,7 @@ std::string description(const Json& entry) {
   return entry.value("description", "");
 }
 
-/// Where the inputs of an entry stand.
+/// Where the inputs of an entry are.
 Json inputs_of(const Json& entry) {
   for (const char* key : {"inputs", "input"})
     if (entry.contains(key)) return entry.at(key);
@@ -309,7 +309,7 @@ void check_entry(const Json& entry, const EntryCheck& check) {
     check(entry);
   } catch (const std::exception& e) {
     ADD_FAILURE() << e.what();
-    return;  // what stands behind it was not reached
+    return;  // what follows it was not reached
   }
   if (testing::Test::HasFatalFailure()) return;
   for (const std::string& key : entry.unread())

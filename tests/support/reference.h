@@ -101,9 +101,9 @@ Vector<double> recurrence_weights(const Json& rule,
 Vector<double> tensor_norms(const std::vector<TensorInfo>& tensors,
                             const Vector<double>& gradient);
 
-/// The tolerance forms of one entry. A form nobody here knows is an error, so
-/// that no comparison is silently loosened or dropped. A `tolerance_note` (or
-/// `note`) beside `rtol` is a formula for the test of that entry.
+/// The tolerance forms of one entry. An unknown form is an error, so that no
+/// comparison is silently loosened or dropped. A `tolerance_note` (or `note`)
+/// next to `rtol` is a formula for the test of that entry.
 class EntryTolerance {
  public:
   explicit EntryTolerance(const Json& entry);
@@ -133,7 +133,7 @@ void check_entry(const Json& entry, const EntryCheck& check);
 
 /// Runs the check of every entry's name; a name that ends in * stands for all
 /// that begin so. Entries `elsewhere` are read by another test of the file; one
-/// that nobody reads is an error, and so is a file without any for this test.
+/// that nothing reads is an error, and so is a file without any for this test.
 /// The suite's own file has an entry for each check.
 void check_entries(const std::string& id,
                    const std::map<std::string, EntryCheck>& checks,

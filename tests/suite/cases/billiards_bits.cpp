@@ -69,7 +69,7 @@ class BilliardsBits : public testing::Test {
     ASSERT_EQ(bench(campaign(out, more)), 0) << out;
   }
 
-  /// results.json without what tells of time, place and way.
+  /// results.json without time, place and way.
   nlohmann::json summary(const std::string& out) const {
     std::ifstream file(root_ / out / "results.json");
     auto all = nlohmann::json::parse(file).at("benchmarks");

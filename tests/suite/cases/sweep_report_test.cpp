@@ -8,7 +8,7 @@
 namespace physinv {
 namespace {
 
-/// 2 x 2 points with one example: fine, float off, float gone, all gone.
+/// 2 x 2 points with one example: fine, float off, float NaN, all NaN.
 StageRecord four_cells() {
   StageRecord s;
   s.stage = "grid";

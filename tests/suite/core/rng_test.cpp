@@ -38,7 +38,7 @@ TEST(Stream, IsPhiloxInOrder) {
   }
 }
 
-// Data, weights and orders of every campaign hang on these: if one changes,
+// Data, weights and orders of every campaign depend on these: if one changes,
 // so does everything that was ever recorded.
 TEST(Stream, KeepsItsBits) {
   Stream s = Rng::root("jpo/billiards", 3).child("data/test").child(7).stream();

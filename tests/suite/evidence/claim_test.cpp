@@ -273,7 +273,7 @@ TEST_F(Caused, WhatDoesNotShowExplainsNothing) {
   EXPECT_EQ(found.verdict, Verdict::not_reproduced);
   EXPECT_EQ(found.cause,
             "why (which does not show here: a 3 ± 1.41 (> 9: no))");
-  // What was not run is no objection.
+  // What was not run does not count against it.
   EXPECT_EQ(of(weaker("why", {open_}), fails_).verdict, Verdict::weaker);
 }
 
@@ -343,7 +343,7 @@ TEST_F(AsPrinted, WhatIsMadeOfKeptNumbersIsJudgedByThem) {
   };
   EXPECT_EQ(again({48, 50, 52, 54}, "p"), Verdict::reproduced);
   EXPECT_EQ(again({50.5, 52.5, 54.5, 56.5}, "p"), Verdict::not_reproduced);
-  // With one part alone, what was decided stands.
+  // With one part alone, what was decided is kept.
   EXPECT_EQ(again({50.5, 52.5, 54.5, 56.5}, "m"), Verdict::not_reproduced);
 }
 
@@ -362,7 +362,7 @@ TEST_F(AsPrinted, WhatWasOnlyReportedIsHeldAgainstABound) {
   EXPECT_EQ(again(above("a", kMean, 9.6)), Verdict::not_reproduced);
   EXPECT_EQ(again(within("a", kMean, 9, 10)), Verdict::reproduced);
   EXPECT_EQ(again(above("b", kMean, 9)), Verdict::not_judged);
-  // What a measured bound came to, nobody kept.
+  // The value of a measured bound was not kept.
   EXPECT_EQ(again(above("a", kMean, mean({"b"}, first_loss()))),
             Verdict::not_judged);
 }

@@ -63,7 +63,7 @@ TEST_F(CurveShapeTest, SettledIsTheMedianOfTheLastThreePoints) {
 }
 
 TEST_F(CurveShapeTest, ALeadIsAShareOfTheUpdates) {
-  // "even" comes to 3, the level of "flat", after 24.15 of 40 updates.
+  // "even" reaches 3, the level of "flat", after 24.15 of 40 updates.
   EXPECT_EQ(lead({"flat"}, {{"even"}})(evidence_).value, 24.0 / 40);
   EXPECT_EQ(lead({"flat"}, {{"even"}}).runs().size(), 2U);
   EXPECT_EQ(lead({"flat"}, {{"none"}})(evidence_).missing,

@@ -105,7 +105,7 @@ TEST_F(QuantityTest, NothingIsSaidOfTheRunsThatDidNotFail) {
       EXPECT_EQ(written(m).text, "1 of 2 runs failed");
       EXPECT_EQ(cell_of(m).text, "1 of 2 runs failed");
     }
-    // Who asks for the stage before it, or for others, is answered.
+    // Requests for the stage before it, or for others, are answered.
     EXPECT_EQ(median({"a", "fit"}, first_loss())(evidence).value, 4);
     EXPECT_EQ(median(b, first_loss())(evidence).value, 1);
   }
@@ -141,7 +141,7 @@ TEST(Each, IsOfThoseThatAreWanted) {
             (std::vector<int>{2, 6}));
 }
 
-/// Infinite over infinite is no ratio, in whatever order the pairs come.
+/// Infinite over infinite is not a ratio, in whatever order the pairs come.
 TEST_F(QuantityTest, TheWorstOfPairsThatBothDivergedIsNotKnown) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   for (const std::uint64_t diverged : {0, 1}) {
@@ -191,7 +191,7 @@ TEST_F(QuantityTest, Arithmetic) {
   EXPECT_EQ(value(least({a, b, 3.5})), 3);
   EXPECT_EQ(value(most({a, b, 3.5})), 4);
   EXPECT_EQ(of(times(2, mean({"a"}, first_loss()))).spread, std::sqrt(18.0));
-  EXPECT_FALSE(of(ratio(0, 0)).value);  // not a number is no number
+  EXPECT_FALSE(of(ratio(0, 0)).value);  // NaN is not a value
 }
 
 TEST_F(QuantityTest, WhatIsNotThereHasAReason) {

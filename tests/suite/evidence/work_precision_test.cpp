@@ -28,7 +28,7 @@ CaseRecord history(const std::string& method,
 }
 
 // Slow and good, fast and rough, and one that is both slow and rough. The start
-// of seed 1 is twice as high, all else is alike.
+// of seed 1 is twice as high, everything else is alike.
 Results three_methods() {
   return Results({history("good", 0, {1, 0.5, 0.01}, 10),
                   history("good", 1, {2, 1, 0.02}, 10),
@@ -44,7 +44,7 @@ TEST(WorkPrecision, MediansArePairedAndRelativeToTheStart) {
   ASSERT_EQ(settings.size(), 3U);
   const SettingHistory& poor = settings[2];
   EXPECT_EQ(poor.method, "poor");
-  EXPECT_EQ(poor.seeds, 2U);  // the third is nobody else's
+  EXPECT_EQ(poor.seeds, 2U);  // the third is of no other method
   EXPECT_DOUBLE_EQ(poor.points.back().loss, 0.8);
   EXPECT_DOUBLE_EQ(poor.points.back().seconds, 30);  // of two problems
   EXPECT_DOUBLE_EQ(poor.points.front().loss, 1);
@@ -108,7 +108,7 @@ TEST(WorkPrecision, FailedRunsAreInTheMedians) {
     EXPECT_DOUBLE_EQ(frail.end.loss, 0.01);
     EXPECT_EQ(frail.end.high, HUGE_VAL);
     EXPECT_TRUE(std::isfinite(*frail.distance));
-    // Whoever lost a process has no seconds.
+    // A method that lost a process has no seconds.
     EXPECT_TRUE(of(at_once, 0)[0].points.empty());
     EXPECT_FALSE(of(at_once, 0)[1].points.empty());
   }

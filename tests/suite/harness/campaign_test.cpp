@@ -290,7 +290,7 @@ TEST_F(CampaignTest, WhateverAStageLeavesTheStoreIsRead) {
     EXPECT_NO_THROW(read_results(out));
     const auto report = verify_results(Results(cases), registry_);
     EXPECT_TRUE(report.mismatches.empty()) << report.mismatches.front();
-    // Other cases go on in the same store.
+    // Other cases continue in the same store.
     if (way % 8 > 0) continue;
     EXPECT_TRUE(run("smoke", {.out = out}).failed.empty());
   }

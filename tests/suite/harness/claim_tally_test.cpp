@@ -62,7 +62,7 @@ TEST(ClaimTally, AMissThatStatesItsCauseIsKnown) {
   const auto known = tally(all, {});
   EXPECT_EQ(known.misses, Names{});
   EXPECT_EQ(known.known_misses, Names{"a/b R2: too few"});
-  // One that holds all the same is said.
+  // One that still holds is reported.
   all[0].claims[0].cause = "an old story";
   EXPECT_EQ(tally(all, {}).stale, Names{"a/b R1: an old story"});
 }
@@ -113,7 +113,7 @@ TEST(ClaimTally, WhatIsRegisteredAloneIsDecidedByNoRun) {
   EXPECT_EQ(decided({constant, measured}, one_run()), 1U);
   EXPECT_EQ(decided({measured}, one_run()), 1U);
   EXPECT_EQ(decided({measured}, Results()), 0U);
-  // Made while it reports: nobody knows from what.
+  // Made while it reports: its source is not known.
   EXPECT_EQ(decided_by_runs(Registry(), sections(), one_run(), {}), 2U);
 }
 

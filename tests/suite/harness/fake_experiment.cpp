@@ -114,7 +114,7 @@ double pace() {
 
 class Base : public Stage {
  public:
-  // A test is no source of numbers; an interface stands for it.
+  // A test is not a source of numbers; an interface stands for it.
   Base(std::string name, Needs needs)
       : Stage("suite/core/method.h"), name_(std::move(name)), needs_(needs) {}
   std::string name() const override { return name_; }
@@ -258,7 +258,7 @@ class Walk final : public Base {
   throw std::runtime_error("it gives up");
 }
 
-/// Ends as it is told to.
+/// Ends as its options say.
 class Ends final : public Base {
  public:
   explicit Ends(std::string how)
@@ -289,7 +289,7 @@ class Ends final : public Base {
   std::string how_;
 };
 
-/// Ends in one of very many ways, told by the number in PHYSINV_FAKE_RETURN:
+/// Ends in one of very many ways, chosen by the number in PHYSINV_FAKE_RETURN:
 /// what a stage may leave, and what none should.
 class Hostile final : public Base {
  public:

@@ -85,7 +85,7 @@ TEST(Registry, AStartLooksAtTheExperimentsOfItsCases) {
         "forward"))
         << e.what();
   }
-  r.add(fake::experiment());  // a name that two have is nobody's
+  r.add(fake::experiment());  // a name that two have belongs to neither
   EXPECT_THROW(validate(r, sound), std::logic_error);
 }
 

@@ -112,7 +112,7 @@ TEST_F(RunCase, NoStageLeavesItsRoundingToTheNext) {
   EXPECT_EQ(float_control(), standard);
   EXPECT_EQ(std::fegetround(), FE_TONEAREST);
   expect_same(run(c).front(), before.front());
-  // Whoever begins may have set it, too.
+  // The code that begins may have set it, too.
   flush_subnormals();
   std::fesetround(FE_UPWARD);
   EXPECT_NE(float_control(), standard);
@@ -227,7 +227,7 @@ TEST_F(RunCase, WhatAFailedStageSpentIsRecorded) {
   EXPECT_GE(s.clocks.solve.cpu, 0.02);
   EXPECT_GT(s.clocks.setup.wall, 0);
   EXPECT_EQ(s.counts[Counter::forward], 4u * 5u);
-  // Who runs a problem itself tells its counts at its end alone.
+  // A method that runs a problem itself reports its counts only at its end.
   const auto alone = run(make("give-up-alone"))[0];
   EXPECT_EQ(alone.stop, Stop::failed);
   EXPECT_GE(alone.clocks.solve.wall, 0.02);

@@ -166,7 +166,7 @@ TEST(Sources, WhatIsWrongIsNamed) {
 
 // ---- from outside -----------------------------------------------------------
 
-/// A problem of one's own by a method of the suite and one's own rule.
+/// A user's problem by a method of the suite and a user's rule.
 struct Project {
   std::vector<SourceFile> files{
       {"mine/drop.h", "1", "core/batch.h mine/src/drop.cpp "},

@@ -58,7 +58,7 @@ std::vector<Built> networks() {
        256,
        256,
        9 * (2 * 4 + 7 * 16 + 2 * 32) + 10 * 12 + 10},
-      // Its first columns are not told.
+      // Its first columns are hidden.
       {"hidden_columns",
        unet({.grid = {16, 8},
              .scalars_after = 1,

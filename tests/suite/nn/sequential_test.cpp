@@ -1,4 +1,4 @@
-// What a network promises beside its numbers: bits, reuse, memory.
+// What a network promises in addition to its numbers: bits, reuse, memory.
 
 #include "suite/nn/sequential.h"
 

@@ -110,7 +110,7 @@ TEST(Budget, SeedsGoWhereTheRankingIsOpen) {
   std::vector<std::size_t> queue;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const CaseInfo& c = all[i].info;
-    // With n = 4, a is better for certain; with n = 8 nobody knows.
+    // With n = 4, a is better for certain; with n = 8 nothing is known.
     const double gap = c.n == 4 ? 10 : 0;
     if (c.seed < 2)
       finished[i] =

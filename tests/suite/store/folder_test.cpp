@@ -1,4 +1,4 @@
-// What is no file of ours is neither followed nor waited for nor replaced.
+// What is not a file of ours is neither followed nor waited for nor replaced.
 #include "suite/store/folder.h"
 
 #include <fcntl.h>

@@ -1,5 +1,5 @@
 // Files with good checksums that the suite did not write: read as what they
-// are or named as damaged, and never a way to what stands elsewhere.
+// are or named as damaged, and never a way to files elsewhere.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

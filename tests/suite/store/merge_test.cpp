@@ -98,7 +98,7 @@ TEST_F(MergeTest, SameStageTwiceMayDifferInTimesOnly) {
 }
 
 /// A shard of x86-64 and one of aarch64: machine and build of a plan and of
-/// records are told, and decide about nothing.
+/// records are kept, and decide nothing.
 TEST_F(MergeTest, ShardsOfTwoProcessorsAreOneCampaign) {
   run("whole", all);
   const auto part = [&](const std::string& where, std::size_t first, json on) {

@@ -356,7 +356,7 @@ TEST_F(StoreTest, UnwritableDirectory) {
 }
 
 /// In a child process: appends until the disk is full, then checks that the
-/// store says so, is whole and goes on once there is room. 0 if so.
+/// store says so, is whole and continues once there is room. 0 if so.
 int fill_the_disk(const fs::path& out,
                   const std::function<void()>& make_full,
                   const std::function<void()>& make_room) {

@@ -64,7 +64,7 @@ inline CaseInfo sample_case(const std::string& method,
 }
 
 /// What `body` is given: JSON of the same shape in which one value is of
-/// another type or size, or is gone; one after the other.
+/// another type or size, or is missing; one after the other.
 template <class Json, class F>
 void for_each_wrong(const Json& good, F&& body) {
   const Json others[] = {nullptr,
