@@ -1,6 +1,6 @@
-"""No object of the suite takes an elementary function from the C library, whose
-bits hang on the processor: suite/core/math.h has them all. What IEEE 754 rounds
-exactly (sqrt, fma, floor, fmod, ...) is free.
+"""No object of the suite takes an elementary function from the C library, whose bits
+depend on the processor: suite/core/math.h has them all. What IEEE 754 rounds exactly
+(sqrt, fma, floor, fmod, ...) is free.
 
     math_symbols_test.py BUILD COMPILER"""
 

@@ -34,7 +34,7 @@ def code_of(text):
 
 
 def expressions(text):
-    """What stands between two of ; { } , outside of parentheses."""
+    """What is between two of ; { } , outside of parentheses."""
     begin = depth = 0
     for at, c in enumerate(text):
         depth = max(0, depth + BRACKETS.get(c, 0))

@@ -70,7 +70,7 @@ def shards(d):
 
 
 def killed(program, out, d):
-    """Kills it once a stage has laid its state down."""
+    """Kills it once a stage has saved its state."""
     process = subprocess.Popen(
         [program, *RUN, "--checkpoint=0.001", "--out=" + out], cwd=d,
         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,

@@ -8,9 +8,9 @@
                                          program over the fake experiment
   attack.py PROGRAM --only KIND --seed N one attempt, told in full
 
-Attempt N of a kind is always the same but for the moments of kills. Seeds that
-once found something stand in seeds.txt and come first. Ends with a table; exit
-1 if anything was found.
+Attempt N of a kind is always the same but for the moments of kills. Seeds that once
+found something are in seeds.txt and come first. Ends with a table; exit 1 if anything
+was found.
 """
 
 import argparse

@@ -1,5 +1,5 @@
 """Kills between two writes: the program ends before one of the calls by which it
-changes files, each of them in turn. Whatever stands there then is read by all
+changes files, each of them in turn. What is there then is read by all
 verbs as complete or incomplete, and the same command makes it whole."""
 
 import math

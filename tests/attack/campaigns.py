@@ -127,14 +127,14 @@ def as_typed(all_flags):
 
 
 def once(pairs):
-    """An object whose names stand once."""
+    """An object without repeated names."""
     if len(dict(pairs)) < len(pairs):
         raise ValueError("a name stands twice")
     return dict(pairs)
 
 
 def parsed(name, data):
-    """By Python's parser; None if it is no document."""
+    """By Python's parser; None if it is not a document."""
     try:
         text = data.decode("utf-8").removeprefix("\ufeff")
         if name.endswith(".json"):

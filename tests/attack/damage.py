@@ -107,7 +107,7 @@ def deepened(rng, text):
 
 
 def change(rng, value):
-    """One node with another value, gone, doubled or deep. Returns the new
+    """One node with another value, removed, doubled or deep. Returns the new
     value or text, the path, and the families of before and after."""
     everywhere = list(places(value))
     path = rng.choice(everywhere)

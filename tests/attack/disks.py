@@ -1,5 +1,5 @@
 """Disks without space or inodes, limits of file sizes, disks that can only be
-read: what was there stays, and with space the same command goes on."""
+read: what was there stays, and with space the same command continues."""
 
 import os
 import resource
@@ -66,7 +66,7 @@ def campaign(attempt, disk, more, prepare):
 
 
 def output(attempt, disk, more, prepare):
-    """What cannot be written anew is as it was; with space it is written."""
+    """What cannot be written again is as it was; with space it is written."""
     line, needs, makes = attempt.rng.choice(WRITES)
     attempt.take(*needs)
     for _ in range(2):  # where nothing was, and where something was

@@ -10,7 +10,7 @@ from world import Attempt
 
 KINDS = list(stores.TARGETS)
 REFUSED = (2, 3, 9, 10)
-# Words of a call that goes on without what is damaged.
+# Words of a call that continues without what is damaged.
 TOLD = ("warning", "measuring", "damaged")
 # What a journal line or a plan cannot do without: other types are refused.
 NEEDED = {
@@ -97,8 +97,8 @@ def reseal(attempt):
     sandbox.write(path, data)
     attempt.note(f"{path_of(path)}: {words}")
     attempt.hits += 1
-    # Arrays are held by the hashes of their journal lines, too; a digest by
-    # the results beside it.
+    # Arrays are held by the hashes of their journal lines, too; a digest by the results
+    # in its folder.
     ended = read_it(attempt, name, path, strict=form in ("case", "campaign"))
     if must:
         attempt.expect(ended.code in REFUSED,

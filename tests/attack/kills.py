@@ -1,5 +1,5 @@
-"""Kills and signals at random moments of campaigns that lay down checkpoints,
-each followed by a run that goes on: the end is that of an undisturbed one."""
+"""Kills and signals at random moments of campaigns that save checkpoints, each followed
+by a run that continues: the end is that of an undisturbed one."""
 
 import fcntl
 import os
@@ -150,7 +150,7 @@ def trains(process):
 
 
 def full_pipe():
-    """A pipe that nobody reads and that holds no more."""
+    """A full pipe without a reader."""
     reader, writer = os.pipe()
     fcntl.fcntl(writer, fcntl.F_SETPIPE_SZ, 4096)
     os.set_blocking(writer, False)
@@ -163,7 +163,7 @@ def full_pipe():
 
 
 def stopped(attempt, campaign, process, number, unread=False):
-    """SIGINT or SIGTERM: ends soon, says how to go on, keeps the state."""
+    """SIGINT or SIGTERM: ends soon, says how to continue, keeps the state."""
     ended = attempt.ended(process.wait(5, begin=time.monotonic()))
     if not attempt.expect(ended.code == 130,
                           f"{signal.Signals(number).name}: {ended.code}"):
@@ -213,7 +213,7 @@ def signals(attempt):
 
 
 def end_of(attempt, process, limit, number, unread):
-    """Ends by the signal, or goes on; a worker's end is a failed stage."""
+    """Ends by the signal, or continues; a worker's end is a failed stage."""
     if unread:
         # A worker takes no notice, so that the campaign waits for its reader.
         process.end()

@@ -105,7 +105,7 @@ def close(*descriptors):
 
 
 def without_folder():
-    """The folder that it starts in is gone."""
+    """The folder that it starts in was deleted."""
     os.makedirs("gone")
     os.chdir("gone")
     os.rmdir("../gone")
@@ -142,7 +142,7 @@ def refuse(attempt, arguments, needs=()):
 
 
 def harmless(attempt, arguments, needs=(), codes=None, **kwargs):
-    """Ends as documented; who is told of wrong usage, finds nothing made."""
+    """Ends as documented; after a usage error nothing was made."""
     attempt.take(*needs)
     before = sandbox.snapshot(attempt.folder)
     ended = attempt.run(*arguments, limit=10, **kwargs)
@@ -212,7 +212,7 @@ def variable(attempt):
     attempt.note(str(env)[:200])
     verb = attempt.rng.choice(("run", "run", "run", "list", "plan", "report"))
     arguments, needs = BASE[verb]
-    # The protocol of GoogleTest: who reads the variables says so there.
+    # The protocol of GoogleTest: a program that reads the variables creates the file.
     attempt.owned = lambda path: path == "home/.cache" or path == "home/" or (
         path.startswith("home/.cache/"))
     harmless(attempt, arguments, needs, env=env)

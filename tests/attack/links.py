@@ -1,4 +1,4 @@
-"""What lies in a store or beside a target and is not the suite's: links that
+"""What is in a store or next to a target and is not the suite's: links that
 lead elsewhere, and a user's files with names like those of leftovers."""
 
 import glob

@@ -85,7 +85,7 @@ class Ended:
 
 
 class Running:
-    """A process group under way."""
+    """A running process group."""
 
     def __init__(self, arguments, scratch, prepare=None, **kwargs):
         self.arguments = arguments

@@ -13,7 +13,7 @@ import shutil
 import socket
 import stat
 
-OLD = 1_000_000_000  # seconds; what is written anew has another time
+OLD = 1_000_000_000  # seconds; what is written again has another time
 LARGEST = 64 << 20   # larger files count by size and time
 
 PLANTED = {

@@ -64,7 +64,7 @@ def dump(value, indent=None, depth=0):
 
 
 def _encoded(value, indent=None):
-    # Half a surrogate pair is no UTF-8; the program puts a mark in its place.
+    # Half a surrogate pair is not UTF-8; the program puts a mark in its place.
     return dump(value, indent).encode(errors="replace")
 
 

@@ -23,7 +23,7 @@ FILES = [TREE + "../outside/data.h5", "{box}/outside/data.h5", "cases/../lock",
 
 
 def every(value, old, new):
-    """Text by another text, wherever it stands in JSON."""
+    """Text by another text, wherever it is in JSON."""
     if isinstance(value, dict):
         return {every(k, old, new): every(v, old, new)
                 for k, v in value.items()}

@@ -88,7 +88,7 @@ def inputs(attempt):
         attempt.same_results(attempt.path(reader.store),
                              os.path.join(attempt.world.golden, reader.whole))
         return
-    # A folder may take the place of one, what is missing is made anew, and
+    # A folder may take the place of one, what is missing is made again, and
     # devices are written into.
     written = form in ("null", "zero") and kind.startswith("page")
     good = ended.code == 0 and (came == truth or form in ("folder", "dangling")
@@ -114,7 +114,7 @@ OUTPUTS = list(itertools.product(range(len(WRITES)), FORMS))
 
 
 def outputs(attempt):
-    """What is no regular file is written into or refused; it stays."""
+    """What is not a regular file is written into or refused; it stays."""
     number, form = OUTPUTS[attempt.seed * 101 % len(OUTPUTS)]
     arguments, needs = WRITES[number]
     attempt.take(*needs)

@@ -29,7 +29,7 @@ class Reader:
     needs: tuple
     makes: tuple = ()
     env: dict = dataclasses.field(default_factory=dict)
-    whole: str = ""  # runs go on; these results come of it
+    whole: str = ""  # runs continue; these results come of it
     store: str = ""
 
 
@@ -57,7 +57,7 @@ READERS = {
                      ("half",), whole="whole", store="half"),
 }
 
-# Kind of file -> where it is, who reads it.
+# Kind of file -> where it is, what reads it.
 TARGETS = {
     "journal": ("done/journal.jsonl",
                 ("verify", "report", "export", "compare", "again")),
@@ -96,7 +96,7 @@ def files(folder, kind):
 
 
 def interrupted(world, store):
-    """Killed in a training, with its state laid down."""
+    """Killed in a training, with its state saved."""
     for _ in range(50):
         shutil.rmtree(store, ignore_errors=True)
         process = world.start(["run", *SHORT, "--trace", "--jobs=1",
@@ -145,7 +145,7 @@ def make(world):
 
 
 def made(attempt, reader):
-    """What a call came to, but for times."""
+    """The result of a call, but for times."""
     found = {}
     for name in reader.makes:
         path = attempt.path(name)
@@ -166,7 +166,7 @@ def call(attempt, name):
 
 
 def truth(world, name, attempt_type):
-    """What a call comes to if nothing is damaged."""
+    """The result of a call if nothing is damaged."""
     if name not in world.truths:
         attempt = attempt_type(world, "undamaged", name)
         attempt.take(*READERS[name].needs)

@@ -25,7 +25,7 @@ def without_times(value):
 
 
 def results(store):
-    """What a campaign came to; nothing if it did not end."""
+    """The results of a campaign; nothing if it did not end."""
     path = os.path.join(store, "results.json")
     if not os.path.isfile(path):
         return None

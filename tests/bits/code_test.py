@@ -1,6 +1,6 @@
 """What may not be in code that computes numbers:
 
-fused operations that nobody wrote: GCC 12 makes some of c a - s b, c b + s a
+fused operations that no source has: GCC 12 makes some of c a - s b, c b + s a
 although contraction is off.
 
 And what may not be in the loops that take most of the time: sums that went to
@@ -81,7 +81,7 @@ def badly_made(functions):
 
 
 def found(program):
-    """The functions that hold an operation that nobody wrote, how many do fma,
+    """The functions that hold an operation that no source has, how many do fma,
     the code of those that are looked at, and what is for wide registers."""
     code = subprocess.Popen(["objdump", "-dC", "--no-show-raw-insn", program],
                             stdout=subprocess.PIPE, text=True)

@@ -3,8 +3,8 @@ estimate and metric has the same bits. The second program is linked in another
 order, with registers of 256 bits where the first has 512, and states other
 caches to Eigen; it runs without the C library's variants for FMA and AVX2, in
 two shards with two threads per case, of which the first is interrupted and
-resumed, where the first ran with eight workers. What hangs on all that is left
-out: times, memory, and work that a whole register skips.
+resumed, where the first ran with eight workers. What depends on all that is left out:
+times, memory, and work that a whole register skips.
 
 PROGRAM (with its campaign RESULTS), VARIED, BASELINE"""
 
@@ -45,7 +45,7 @@ def smoke(program, out, *flags, check=True):
 def in_parts(program, out):
     shards = [out.with_name(f"shard{i}") for i in (1, 2)]
     flags = ["--threads=2", "--jobs=2"]
-    # Ends early, with its own status; the next command goes on.
+    # Ends early, with its own status; the next command continues.
     smoke(program, shards[0], "--shard=1/2", "--time-budget=1", *flags,
           check=False)
     for i, shard in enumerate(shards, 1):

@@ -77,7 +77,7 @@ make()
 file(TIMESTAMP ${work}/build_info.cpp second "%s")
 same("unchanged sources leave the file" "${first}" "${second}")
 
-# Comments and formatting are nobody's business.
+# Comments and formatting change nothing.
 file(WRITE ${tree}/problems/heat/heat.h
   "// which\n  #include /* why */ \"suite/core/rng.h\"  // generator\n\n")
 file(WRITE ${tree}/suite/harness/run_stage.cpp "int /* what */\n  runs ;")

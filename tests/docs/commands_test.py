@@ -16,7 +16,7 @@ import tempfile
 from documented import commands, pages
 
 PROGRAM, SOURCES = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
-CAMPAIGNS = {  # those that the pages read: the flags of what stands in for them
+CAMPAIGNS = {  # those that the pages read: the flags of what replaces them
     **dict.fromkeys(("results/paper", "results/quick", "results/old",
                      "results/new", "results/a", "results/b", "results/base",
                      "results/first", "base"), ()),

@@ -29,8 +29,8 @@ def page():
 
 
 def data_sets(path):
-    """Name, as the page has it, to the shapes of all that go by it; names of
-    attributes with where they stand; what is wrong with them."""
+    """Name, as the page has it, to the shapes of all of this name; names of attributes
+    with their places; what is wrong with them."""
     found, attributes, wrong = {}, set(), []
 
     def note(place, item):
@@ -104,7 +104,7 @@ def is_number(cell):
 
 
 def tables(folder):
-    """Of a report's CSV, what is wrong, and the columns that stand beside."""
+    """Of a report's CSV, what is wrong, and the columns next to it."""
     wrong, beside = [], set()
     paths = glob.glob(folder + "/report/*/tables/*.csv")
     for path in paths:

@@ -6,7 +6,7 @@ flags of the program, counts are the program's and verdicts those of RESULTS.md,
 where what is not reproduced has a cause. Prose, help texts and what sources print
 have short sentences and usual words, comments of sources usual words.
 Pages of papers have no measured numbers:
-those stand on pages that the program writes. The table of features has a sign of
+those are on pages that the program writes. The table of features has a sign of
 each suite. The baseline of CI has all cases of its profile. A source that a page or
 a comment names is there.
 """
@@ -148,7 +148,7 @@ def help_not_plain():
         text = output(*verb, "--help")
         if len(text) < 100:
             yield f"--help of {verb} says nothing"
-        words = re.sub(r"\n {10,}", " ", text)  # lines that go on
+        words = re.sub(r"\n {10,}", " ", text)  # lines that continue
         words = re.sub(r"\s*\n\s*", "\n\n", re.sub(r"`.*?`", "x", words))
         name = " ".join(["--help of", *verb])
         yield from not_plain(name, words.replace("  ", ": "))

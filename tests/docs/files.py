@@ -20,7 +20,7 @@ def names(section, first):
 
 
 def differences(section, store, published):
-    """Files that are there and not told, or told and not there."""
+    """Files that are there and not named, or named and not there."""
     told = {name: re.compile("".join(
         r"[^/.]+" if part == "<id>"
         else r"[^/]+" if part.startswith("<") else re.escape(part)
@@ -60,7 +60,7 @@ def key_differences(what, said, documents, besides=()):
         children(document, "", found)
     for name in set(said) | set(besides):
         parts = name.split(".")
-        # `a[].b` tells `a` as well.
+        # `a[].b` names `a` as well.
         for k, part in enumerate(parts):
             parent = ".".join(parts[:k])
             told.setdefault(parent, set()).add(part.removesuffix("[]"))

@@ -14,7 +14,7 @@ from program import FAILED, check, expect, run  # noqa: E402
 
 ASPECTS = ("loss", "status", "claims", "work", "time", "missing")
 FAIL_ON = [f"--fail-on={aspect}" for aspect in ASPECTS]
-COSTS = {"work", "time"}  # no gain of who ends worse, either
+COSTS = {"work", "time"}  # no gain of a stage that ends worse, either
 
 # What compare calls worse, from the base to the change and back, and what gate
 # says: worse, better, same. Where nothing but the last bits is another, gate may
@@ -65,7 +65,7 @@ def compared(d, what, sides, worse, places):
               f"{what}: compare --by={by} -> {p.returncode} {told} "
               f"{p.stderr.strip()[:300]}")
         if by == "method" and what.startswith("slower") and "back" in what:
-            continue  # who got faster is no worst pair
+            continue  # a faster stage is not a worst pair
         named = [r for r in rows_of(p) if is_named(r)]
         wanted = {w if by == "seed" else (*w[:2], None, None) for w in places}
         check({(r["method"], r["stage"], r["n"], r["seed"]) for r in named}
@@ -78,7 +78,7 @@ def compared(d, what, sides, worse, places):
 
 def gated(d, what, sides, plant, verdict, place, stages):
     """The base is that of the whole campaign; back, of the place alone."""
-    if verdict is None:  # a campaign with failures is no baseline
+    if verdict is None:  # a campaign with failures is not a baseline
         expect(10, ["baseline", sides[0], "--out=no.txt"], d, "failed")
         return
     whole = sides[0] == "base"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """packages_test.py BUILD WORK: the Debian packages that cpack makes of a build
 tree, unpacked into a root of their own: what they depend on, a first result from
-the program, and Python's package beside it.
+the program, and Python's package.
 """
 
 import glob

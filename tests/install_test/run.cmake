@@ -27,7 +27,7 @@ if(kernels)
   run(${bench} kernels --benchmark_list_tests)
 endif()
 
-# The sources are still there; whoever read them would notice nothing.
+# The sources are still there; a reader would notice nothing.
 file(WRITE ${published}/jpo.json "{}")
 execute_process(COMMAND ${bench} report ${work}/results
   RESULT_VARIABLE status ERROR_VARIABLE message)

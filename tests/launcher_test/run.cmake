@@ -100,7 +100,7 @@ launch(${checkout} check)
 expect_one_build("tests by the path")
 
 # What nothing changed starts no ninja; an edit, a new file, another revision, a
-# tree configured anew and a lost program each do.
+# tree configured again and a lost program each do.
 file(WRITE ${work}/no_ninja/ninja "#!/bin/sh\necho asked\nexit 1\n")
 file(CHMOD ${work}/no_ninja/ninja PERMISSIONS OWNER_READ OWNER_EXECUTE)
 function(expect_ninja asked what)
@@ -152,7 +152,7 @@ if(NOT aarch64 STREQUAL clang OR NOT x86_64 STREQUAL "")
     "packages of [bench]: '${aarch64}' on ARM, '${x86_64}' elsewhere")
 endif()
 
-# The libraries for ARM are unpacked by who is not root, too, and where nothing
+# The libraries for ARM are unpacked by users other than root, too, and where nothing
 # was installed before.
 file(WRITE ${work}/fake/mmdebstrap "#!/bin/sh\necho \"fake $@\"\nexit 1\n")
 file(CHMOD ${work}/fake/mmdebstrap PERMISSIONS OWNER_READ OWNER_EXECUTE)

@@ -3,10 +3,9 @@
 libraries' solvers, built on the installed suite. Skipped where its packages are
 missing: apt-packages.txt, [libraries].
 
-Its methods keep the contracts and run on the suite's problems, beside the
-suite's own, which have the same losses as in the suite's experiments; versions
-are recorded; verify finds the same bits; libraries are in the plug-in, not
-in the program.
+Its methods keep the contracts and run on the suite's problems, next to the suite's own,
+which have the same losses as in the suite's experiments; versions are recorded; verify
+finds the same bits; libraries are in the plug-in, not in the program.
 """
 
 import collections

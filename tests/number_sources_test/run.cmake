@@ -11,7 +11,7 @@ function(same what made expected)
   endif()
 endfunction()
 
-# A new experiment, whose names stand in no list.
+# A new experiment, whose names are in no list.
 set(new sip/new)
 physinv_sort_sources(made
   ${new}/claims.cpp ${new}/drift.cpp ${new}/experiment.cpp ${new}/figures.cpp

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""beside_pytorch.py PEERS: times of this suite beside PyTorch programs of the same
+"""beside_pytorch.py PEERS: times of this suite next to PyTorch programs of the same
 experiments, as the table of docs/performance.md.
 
 PEERS is a folder of programs <id>_torch.py, each of which prints one JSON object with

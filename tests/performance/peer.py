@@ -1,5 +1,6 @@
-"""peer.py PROGRAM ARGUMENTS: runs a PyTorch program whose JSON then tells every time as
-{"wall": seconds, "cpu": seconds}. The clock stands while training examples are drawn.
+"""peer.py PROGRAM ARGUMENTS: runs a PyTorch program whose JSON then has every time as
+{"wall": seconds, "cpu": seconds}. The clock is stopped while training examples are
+drawn.
 """
 
 import importlib.util

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""campaign_test.py WORK: a campaign run and read from Python, and SciPy's BFGS
-beside ours on 128 problems of billiards."""
+"""campaign_test.py WORK: a campaign run and read from Python, and SciPy's BFGS compared
+with ours on 128 problems of billiards."""
 
 import json
 import os

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""examples_test.py WORK: what stands in examples/python does what it says.
+"""examples_test.py WORK: what is in examples/python does what it says.
 Tesseract's runtime is taken as it is installed, or else two of its names."""
 
 import importlib.util
@@ -25,14 +25,14 @@ EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)),
 
 
 class Schema:
-    """Stands in for pydantic's BaseModel."""
+    """Replaces pydantic's BaseModel."""
 
     def __init__(self, **values):
         vars(self).update(values)
 
 
 class Type:
-    """Stands in for Tesseract's types of arrays."""
+    """Replaces Tesseract's types of arrays."""
 
     def __class_getitem__(cls, item):
         return cls

@@ -17,7 +17,7 @@ Primal = namedtuple("Primal", "value perturbed")
 
 
 class SymbolicZero:
-    """Stands in for JAX's."""
+    """Replaces JAX's."""
 
 
 class CustomVjp:

@@ -215,7 +215,7 @@ class Methods(unittest.TestCase):
             x = x + v
         self.assertTrue(np.array_equal(
             self.results.examples(row["case"])["x"], x))
-        # Of one who returns x alone the counts are those of the suite.
+        # Of a method that returns x alone the counts are those of the suite.
         e = self.results.examples(row["case"])
         self.assertEqual(list(e["iterations"]), [60] * 4)
         self.assertEqual(list(e["evaluations"]), [60] * 4)
@@ -267,7 +267,7 @@ class Methods(unittest.TestCase):
         self.assertEqual((row["stop"], row["iterations"]), ("converged", 3))
         e = self.results.examples(row["case"])
         self.assertEqual(e["status"], ["gtol"] * 4)
-        # As they were accepted and asked for; what it says stands beside them.
+        # As they were accepted and asked for; what it says is stored next to them.
         self.assertEqual(list(e["iterations"]), [3] * 4)
         self.assertEqual(list(e["evaluations"]), [4] * 4)
         self.assertEqual(list(e["arrays"]["claimed_iterations"]), [7] * 4)
@@ -329,7 +329,7 @@ class Methods(unittest.TestCase):
         rows = physinv.compare(first, again)["rows"]
         self.assertEqual({r["method"]: r["sides"][1]["same_bits"] for r in rows},
                          {"bfgs": 1, "py-momentum": 1})
-        # Who does not know the method leaves nothing out in silence.
+        # A program without the method leaves nothing out in silence.
         done = subprocess.run([physinv.program(), "baseline", first,
                                "--out=" + WORK + "/none.txt"],
                               capture_output=True, text=True)

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""overhead.py [OUT]: what a call from Python costs beside its computation. To be run
-on a quiet machine, with the package in PYTHONPATH; no test runs it.
+"""overhead.py [OUT]: what a call from Python costs in addition to its computation. To
+be run on a quiet machine, with the package in PYTHONPATH; no test runs it.
 
-Exits with 1 where a call takes 2 us beside what it computes, or the calls of a step
-1 % of a step of our JPO on 128 problems of billiards, which computes the same."""
+Exits with 1 where a call takes 2 us in addition to what it computes, or the calls of a
+step 1 % of a step of our JPO on 128 problems of billiards, which computes the same."""
 
 import sys
 import tempfile
@@ -42,7 +42,7 @@ def step_of_jpo(out):
 
 def main():
     billiards = physinv.problem("jpo/billiards")
-    # Of one sample of two numbers, all is beside the computation.
+    # Of one sample of two numbers, all is overhead.
     bare = {name: seconds(call) for name, call in calls(
         physinv.problem("physgrad/scaling"), 1).items()}
     for n in (1, 128):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""own_overhead.py: what a call of a problem in Python costs in a campaign, beside the
-same function called by SciPy's BFGS alone, in CPU time. To be run on a quiet machine, with
-the package in PYTHONPATH and SciPy; no test runs it.
+"""own_overhead.py: what a call of a problem in Python costs in a campaign, compared
+with the same function called by SciPy's BFGS alone, in CPU time. To be run on a quiet
+machine, with the package in PYTHONPATH and SciPy; no test runs it.
 
 Exits with 1 where a gradient of 1 ms takes more than 1.2 times as long."""
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """pip_test.py WORK SOURCES BUILD: `pip install ./python --no-build-isolation`
-into an environment of its own, without a network; what is installed stands by
-itself."""
+into an environment of its own, without a network; what is installed needs nothing
+else."""
 
 import importlib.util
 import os

@@ -255,7 +255,7 @@ print("differs", after != before, "equals", after == median("decorated"))
 
 
 class Words(unittest.TestCase):
-    """Beside the hash of the source."""
+    """In addition to the hash of the source."""
 
     def words(self, solve=len, **options):
         return _methods.words_of("m", solve, options)

@@ -1,10 +1,10 @@
 """Reports say what tests/reports/golden holds: of the smoke profile every claim,
 table and figure as JSON, and the sums of all other files; every claim of a
-made-up campaign. Long lists of numbers stand there as their ends and their sum.
+made-up campaign. Long lists of numbers are there as their ends and their sum.
 
   golden_test.py GOLDEN-REPORT STORE-OF-SMOKE WORK [--update]
 
---update writes the golden files anew; git shows what changed."""
+--update writes the golden files again; git shows what changed."""
 
 import hashlib
 import json
@@ -75,7 +75,7 @@ def lines_of(value, name, indent=""):
 
 
 def golden_of(report, section, folder):
-    """What is told of a section, in lines."""
+    """What is said of a section, in lines."""
     own = os.path.join(report, folder)
     lines = lines_of(section, "")
     sums = {}

@@ -2,10 +2,10 @@
 there is one.
 
 The index is small, links and fragments lead somewhere, each figure is also
-Vega-Lite, no two entries of a legend look alike, and what the papers print of
-their curves stands beside ours. Nothing is wider than the window at 390, 800 and
-1400 pixels, a page has few elements, loads within a second on a machine that is
-not busy, and fits 30 sheets that cut no table.
+Vega-Lite, no two entries of a legend look alike, and what the papers print of their
+curves is next to ours. Nothing is wider than the window at 390, 800 and 1400 pixels, a
+page has few elements, loads within a second on a machine that is not busy, and fits 30
+sheets that cut no table.
 """
 
 import glob
@@ -67,7 +67,7 @@ def cards(index):
 
 
 def legends(path):
-    """Samples beside the names differ."""
+    """Samples next to the names differ."""
     count = 0
     for legend in re.findall(r'<ul class="legend">.*?</ul>', read(path), re.S):
         entries = re.findall(r"<li[^>]*>(.*?</svg>)(.*?)</li>", legend, re.S)
@@ -97,7 +97,7 @@ def drawn(pages):
 
 
 def vega_lite(out):
-    """Each figure has a specification beside it, with its data inside."""
+    """Each figure has a specification next to it, with its data inside."""
     figures = glob.glob(os.path.join(out, "*", "figures", "*.svg"))
     for path in figures:
         with open(path[:-len("svg")] + "vl.json") as f:

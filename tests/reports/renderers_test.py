@@ -1,5 +1,4 @@
-"""renderers_test.py PROGRAM STORE: figures of a report in programs that
-nobody here wrote.
+"""renderers_test.py PROGRAM STORE: figures of a report in other programs.
 
 Every SVG of the reports that have all kinds of figures is drawn by CairoSVG and
 rsvg-convert: it has the colours of its curves and of its fields. With

@@ -64,7 +64,7 @@ FAINT = """(() => {
   return [...faint];
 })()"""
 
-# Pictures without words for those who do not see them.
+# Pictures without words for readers who do not see them.
 NAMELESS = """[...document.querySelectorAll('img, svg')].filter(e =>
   !e.closest('[aria-hidden=true]') && !(e.getAttribute('alt') ||
   e.getAttribute('aria-label') || e.querySelector('title')?.textContent))

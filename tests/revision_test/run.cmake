@@ -1,6 +1,6 @@
-# A program names the revision that it was linked from, wherever the sources
-# stand by then; a commit compiles one source. Last the suite's own program.
-# Usage: cmake -D source=... -D compiler=... -D work=... -D program=...
+# A program names the revision that it was linked from, wherever the sources are
+# by then; a commit compiles one source. Last the suite's own program. Usage:
+# cmake -D source=... -D compiler=... -D work=... -D program=...
 #   -D told=... -P run.cmake
 cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE ${work})

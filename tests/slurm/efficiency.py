@@ -7,7 +7,7 @@ case that several campaigns have counts once, by its longest run.
 With --parallel, a second table: once no case of a worker waits, its free cores
 go to its running cases, as with run --share-cores. More threads speed up the
 share P of a case (Amdahl); a PREFIX of names has its own P, the last that fits
-counts. What saving a state and going on from it takes is left out."""
+counts. What saving a state and continuing from it takes is left out."""
 
 import argparse
 import gzip

@@ -1,4 +1,4 @@
-"""Stages that go on from the middle: killed, damaged, run again."""
+"""Stages that continue from the middle: killed, damaged, run again."""
 
 import glob
 import json
@@ -34,7 +34,7 @@ def states(out):
 
 
 def killed_inside(out):
-    """Kills a campaign once a stage has laid its state down."""
+    """Kills a campaign once a stage has saved its state."""
     process = start(out)
     end = time.time() + 60
     while not states(out) and process.poll() is None and time.time() < end:
@@ -64,7 +64,7 @@ def forgeries(state):
     yield head  # without an end
     for size in (0, 1, 7, 8, len(parts) // 2, len(parts) - 1):
         yield head + b"\n" + parts[:size]
-    # Estimates and gradients stand first, 2 x 4 each.
+    # Estimates and gradients are first, 2 x 4 each.
     rest = parts[2 * len(matrix(2, 4)):]
     for rows, columns in ((2, 3), (2, 5), (1, 4), (0, 0), (2, 0)):
         yield head + b"\n" + 2 * matrix(rows, columns) + rest
@@ -75,7 +75,7 @@ def forgeries(state):
 
 
 def forged(d, whole):
-    """Each is given up, and the stage comes to what it should."""
+    """Each is given up, and the stage has the result that it should."""
     out = os.path.join(d, "forged")
     state = killed_inside(out)
     original = os.path.join(d, "original")

@@ -93,7 +93,7 @@ def good_input(d):
 
 
 def accounts(d):
-    """Data, evaluation, bookkeeping and waiting are told apart."""
+    """Data, evaluation, bookkeeping and waiting are listed separately."""
     p = expect(0, ["--profile=smoke", "--out=accounts"], d)
     parts = ("data ", "evaluation ", "bookkeeping ", "waiting for the disk ")
     line = next(x for x in p.stdout.splitlines() if " stages run, " in x)
@@ -247,7 +247,7 @@ def same_bits(d):
 
 
 def interrupted(d):
-    """SIGINT keeps what has finished; the next run goes on."""
+    """SIGINT keeps what has finished; the next run continues."""
     for number, jobs in ((signal.SIGINT, "1"), (signal.SIGTERM, "2")):
         out = f"slow{jobs}"
         p = subprocess.Popen(
@@ -266,7 +266,7 @@ def interrupted(d):
 
 
 def crowded(d):
-    """Who waits for a core has more wall time than CPU time; it is said once,
+    """A run that waits for a core has more wall time than CPU time; it is said once,
     and kept."""
     env = {"PHYSINV_FAKE_PACE_MS": "5"}
     p = expect(0, ["--profile=smoke", "--out=crowded", "--filter=descend"], d,

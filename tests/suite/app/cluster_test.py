@@ -1,5 +1,5 @@
-"""submit and status with a Slurm that refuses, hangs, prints without end or
-answers what is no answer."""
+"""submit and status with a Slurm that refuses, hangs, prints without end or answers
+nonsense."""
 
 import json
 import os

@@ -60,7 +60,7 @@ def closed_streams(d):
 
 
 def broken_streams(d):
-    """The campaign goes on, and that nobody could read it is said."""
+    """The campaign continues, and says that its output could not be read."""
     out = os.path.join(d, "broken")
     with open("/dev/full", "w") as full:
         fails(9, "standard output", *SMOKE, "--out", out, stdout=full)

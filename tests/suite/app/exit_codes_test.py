@@ -11,7 +11,7 @@ from program import BENCH, FAILED, check, expect, run
 
 DOCS = os.path.abspath(sys.argv[2])
 
-# What goes on as another program: cli_test.py and install.pendulum have them.
+# What runs another program in its place: cli_test.py and install.pendulum have them.
 OTHER_PROGRAMS = ("conformance", "kernels")
 SELECTION = ["--profile=quick", "--filter=descend", "--tasks=2"]
 

@@ -245,7 +245,7 @@ def not_run(d):
 
 
 def repetitions(d):
-    """Medians stand in results.json, as in every export."""
+    """Medians are in results.json, as in every export."""
     campaign(d, "again", flags=("--benchmark_repetitions=4",))
     with open(os.path.join(d, "again", "results.json")) as f:
         entries = json.load(f)["benchmarks"]

@@ -76,7 +76,7 @@ def says_less(d):
 
 
 def a_page_that_fails(d):
-    """What the run came to goes before, and is not lost."""
+    """The results of the run come before, and are not lost."""
     env = {"PHYSINV_PUBLISHED_DIR": "/nowhere"}
     expect(2, ["--profile=smoke", "--out=unpublished"], d, "no directory",
            env=env)
@@ -156,13 +156,13 @@ def a_campaign_file(d):
 
 
 def a_budget_is_kept(d):
-    """A stage that would go on for a minute ends with the budget."""
+    """A stage that would run for a minute ends with the budget."""
     begin = time.time()
     p = expect(10, ["--profile=slow", "--filter=sleep", "--out=slept",
                     "--time-budget=4"], d, "2 of 2 cases not run within")
     seconds = time.time() - begin
-    # What is not for cases comes off it: the start, pages, and a wait for whoever
-    # cannot lay its state down.
+    # What is not for cases comes off it: the start, pages, and a wait for stages that
+    # cannot save their state.
     check(2.5 < seconds < 8, f"a budget of 4 s took {seconds:.1f} s")
     check("out of time: 2 cases" in p.stdout, "they are named")
     expect(0, ["--profile=smoke", "--out=soon", "--time-budget=100"], d,

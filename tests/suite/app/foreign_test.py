@@ -1,4 +1,4 @@
-"""What is not the suite's stays as it is: files of users in and beside a store,
+"""What is not the suite's stays as it is: files of users in and next to a store,
 links, FIFOs, sockets and directories in place of files, forged shards."""
 
 import glob
@@ -168,7 +168,7 @@ def put(kind, path):
 
 
 def other_kinds(d):
-    """One line and exit 9, at once, for what is no file."""
+    """One line and exit 9, at once, for what is not a file."""
     verbs = lambda out: (
         ["verify", out], ["report", out], ["export", out],
         ["compare", out, out], ["merge", "merged", out],
@@ -245,7 +245,7 @@ def outputs(d):
 
 
 def removed_journal(d):
-    """Nobody is told that all is well. A run of several journal syncs."""
+    """No message says that all is well. A run of several journal syncs."""
     for replaced in (False, True):
         out = os.path.join(d, f"removed{replaced}")
         process = subprocess.Popen(

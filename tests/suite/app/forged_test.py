@@ -1,5 +1,5 @@
-"""Stored files altered behind checksums that are right: whoever reads them
-names the file, or says the same as before; no forged number is published."""
+"""Stored files altered behind checksums that are right: a verb that reads them names
+the file, or says the same as before; no forged number is published."""
 
 import copy
 import gzip

@@ -1,6 +1,6 @@
 """What command line and environment say: values that are empty, expressions
 that never end, numbers of other kinds, flags against variables, file names of
-any bytes, and a hundred lines that nobody should write.
+any bytes, and a hundred wrong lines.
 
   input_test.py PROGRAM
 """
@@ -187,7 +187,7 @@ def variables(d):
 
 
 def cases_of_windows(d):
-    """CRLF, and names that stand there twice."""
+    """CRLF, and repeated names."""
     names = run("--profile=smoke", "--benchmark_list_tests", cwd=d
                 ).stdout.split()
     path = os.path.join(d, "names.txt")
@@ -199,7 +199,7 @@ def cases_of_windows(d):
 
 
 def damaged_speeds(d):
-    """A cache of what no trial comes to is measured anew; without a place of
+    """A cache of what no trial can measure is measured again; without a place of
     the user's own nothing is kept."""
     cache = os.path.join(d, "speeds")
     env = {"XDG_CACHE_HOME": cache}

@@ -60,6 +60,6 @@ def without(v, names):
 
 
 def results(out, but=TIMES):
-    """What a campaign came to, times apart."""
+    """The results of a campaign, times apart."""
     with open(os.path.join(out, "results.json")) as f:
         return without(json.load(f)["benchmarks"], but)

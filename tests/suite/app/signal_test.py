@@ -1,4 +1,4 @@
-"""Signals: to stop, while nobody reads and while a stage is under way; workers
+"""Signals: to stop, without a reader and while a stage is running; workers
 that are killed; the limit on file sizes."""
 
 import fcntl
@@ -25,7 +25,7 @@ def start(out, *flags, pace="20", stdout=subprocess.PIPE,
 
 
 def full_pipe():
-    """Nobody reads, and nothing fits in any more."""
+    """There is no reader, and nothing fits in any more."""
     reader, writer = os.pipe()
     fcntl.fcntl(writer, 1031, 4096)  # F_SETPIPE_SZ
     os.write(writer, b"." * 4096)
@@ -71,8 +71,8 @@ def states(out):
 
 
 def laid_down(d, whole):
-    """Ctrl-C, to one process or to all of a terminal's: the stage under way is
-    kept, and how to go on is said."""
+    """Ctrl-C, to one process or to all of a terminal's: the running stage is kept, and
+    the message says how to continue."""
     for number, group in ((signal.SIGINT, False), (signal.SIGINT, True),
                           (signal.SIGTERM, True)):
         out = os.path.join(d, f"down{number}{group}")
@@ -98,7 +98,7 @@ def laid_down(d, whole):
 
 
 def twice(d):
-    """A second signal does not wait for stages that cannot lay down."""
+    """A second signal does not wait for stages that cannot save their state."""
     p = start(os.path.join(d, "twice"), "--profile=slow", "--filter=sleep",
               "--jobs=1")
     time.sleep(1)
@@ -110,8 +110,8 @@ def twice(d):
 
 
 def killed_workers(d, whole):
-    """A case whose worker is killed from outside is tried again, and goes on
-    from its state; one that kills them all fails."""
+    """A case whose worker is killed from outside is tried again, and continues from its
+    state; one that kills them all fails."""
     for kills, code in ((1, 0), (2, 0), (3, 4)):
         out = os.path.join(d, f"killed{kills}")
         p = start(out, *DESCEND, "--checkpoint=0.01")
@@ -129,7 +129,7 @@ def killed_workers(d, whole):
 
 
 def small_files(d):
-    """The limit on file sizes is no full disk."""
+    """The limit on file sizes is not a full disk."""
     seen = set()
     for size in (1, 512, 2048, 8192, 30000, 1 << 20):
         out = os.path.join(d, f"limit{size}")

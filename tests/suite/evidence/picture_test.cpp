@@ -26,7 +26,7 @@ CaseRecord solved(const char* method, double first) {
 
 const std::vector<PicturedMethod> kTwo = {{"A", {"a"}}, {"B", {"b"}}};
 
-/// "method x", a panel each.
+/// Titles "<who> <x>", a panel each.
 PictureOptions drawn() {
   return {.title = "T",
           .note = "More.",

@@ -44,7 +44,7 @@ TEST(WorkPrecision, MediansArePairedAndRelativeToTheStart) {
   ASSERT_EQ(settings.size(), 3U);
   const SettingHistory& poor = settings[2];
   EXPECT_EQ(poor.method, "poor");
-  EXPECT_EQ(poor.seeds, 2U);  // the third is of no other method
+  EXPECT_EQ(poor.seeds, 2U);  // no other method has the third
   EXPECT_DOUBLE_EQ(poor.points.back().loss, 0.8);
   EXPECT_DOUBLE_EQ(poor.points.back().seconds, 30);  // of two problems
   EXPECT_DOUBLE_EQ(poor.points.front().loss, 1);

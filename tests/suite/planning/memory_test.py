@@ -1,4 +1,4 @@
-"""What plan tells of memory, beside the resident set of a run of its own for
+"""What plan says of memory, compared with the resident set of a separate run for
 one case of each paper's experiment; and repeated plans agree."""
 
 import json
@@ -10,7 +10,7 @@ import tempfile
 BENCH = os.path.realpath(sys.argv[1])
 FAILED = []
 FACTOR = 2
-# Whatever is smaller may be told as twice this.
+# Whatever is smaller may be given as twice this.
 SMALL = 128e6
 
 

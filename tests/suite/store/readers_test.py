@@ -1,4 +1,4 @@
-"""readers_test.py CASE.h5 METHOD: a case's file in readers that nobody here wrote.
+"""readers_test.py CASE.h5 METHOD: a case's file in other readers.
 
 netCDF's ncdump lists the statuses with their words, Octave's load keeps them
 without a warning, and, with PHYSINV_FULL and npm, jsfive and h5wasm read texts
