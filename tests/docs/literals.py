@@ -5,6 +5,7 @@ import re
 
 FOLDERS = ("suite", "problems", "optimizers", "baselines", "reports",
            "python/module")
+COMMENTED = (*FOLDERS, "examples", "tests")
 # Comments, raw strings, characters and directives are skipped, so that a quote in
 # one of them begins nothing.
 TOKEN = re.compile(
@@ -42,9 +43,9 @@ def comments_of(text):
         yield first, " ".join(words)
 
 
-def texts(sources, texts_of):
+def texts(sources, folders, texts_of):
     """Place and text of what `texts_of` finds in each file of the sources."""
-    for folder in FOLDERS:
+    for folder in folders:
         for path, _, names in os.walk(os.path.join(sources, folder)):
             for name in sorted(names):
                 if name.endswith((".h", ".cpp")):
@@ -56,9 +57,9 @@ def texts(sources, texts_of):
 
 def printed(sources):
     """Place and text of each literal of the sources."""
-    return texts(sources, literals)
+    return texts(sources, FOLDERS, literals)
 
 
 def comments(sources):
     """Place and text of each comment of the sources."""
-    return texts(sources, comments_of)
+    return texts(sources, COMMENTED, comments_of)
