@@ -91,6 +91,34 @@ TYPED_TEST(NetworkModelTest, SavedAndLoadedItPredictsTheSame) {
   EXPECT_THROW(plain.load(arrays), ContractError);
 }
 
+// Between updates, predictions use the memory of the last minibatch.
+TYPED_TEST(NetworkModelTest, PredictionsBetweenMinibatchesChangeNothing) {
+  using T = TypeParam;
+  NetworkModel<T> model(role(), kShape, 2, nullptr);
+  NetworkModel<T> other(role(), kShape, 2, nullptr);
+  for (NetworkModel<T>* m : {&model, &other})
+    m->initialize(Rng::root("network_model", 1));
+  for (int k = 0; k < 3; ++k) {
+    for (const Index count : {5, 9, 12}) {  // fewer, as many, more
+      const Batch<T> input = filled(4, count, 3).template cast<T>();
+      Batch<T> out(2, count), expected(2, count);
+      NetworkModel<T> alone(role(), kShape, 2, nullptr);
+      Arrays arrays;
+      model.save(arrays);
+      alone.load(arrays);
+      model.predict(input, out), alone.predict(input, expected);
+      EXPECT_TRUE(same_bits(out, expected)) << count;
+    }
+    const Batch<T> batch = filled(4, 9, k).template cast<T>();
+    const Batch<T> out_bar = filled(2, 9, k + 1).template cast<T>();
+    EXPECT_TRUE(same_bits(model.forward(batch), other.forward(batch)));
+    EXPECT_TRUE(same_bits(model.backward(out_bar), other.backward(out_bar)));
+    model.update_state(), other.update_state();
+  }
+  EXPECT_EQ(model.counts(), other.counts());
+  EXPECT_EQ(model.bytes(), other.bytes()) << "no memory beside training's";
+}
+
 // Training uses the statistics of the batch, prediction the running ones.
 TYPED_TEST(NetworkModelTest, TrainsAndPredictsInDifferentModes) {
   using T = TypeParam;

@@ -317,9 +317,10 @@ TYPED_TEST(ConvTest, BlockFollowsTheFormulas) {
   }
 }
 
-/// Skip, pooling and upsampling around a block, on lines and planes.
-NetworkRecipe nested(bool plane) {
-  return network([plane]<class U>() {
+/// Skip, pooling and upsampling around a block, on lines and planes. A skip
+/// connection keeps the outputs of `ends_in_block`, not those of upsampling.
+NetworkRecipe nested(bool plane, bool ends_in_block = false) {
+  return network([=]<class U>() {
     const Grid grid = plane ? Grid{4, 4} : Grid{8}, half = halved(grid);
     const Taps taps = plane ? Taps{3, 3} : Taps{3, 1};
     const auto block = [&](Grid g, Index in, Index out, Activation f) {
@@ -329,6 +330,7 @@ NetworkRecipe nested(bool plane) {
     auto inner = layers(max_pool<U>(grid, 3),
                         block(half, 3, 4, Activation::softplus),
                         upsample<U>(half, grid, 4));
+    if (ends_in_block) inner.push_back(block(grid, 4, 4, Activation::sigmoid));
     return layers(block(grid, 2, 3, Activation::tanh),
                   skip<U>(grid.positions(), std::move(inner)),
                   block(grid, 7, 2, Activation::sigmoid),
@@ -387,7 +389,8 @@ TEST(ConvGradient, OfBlocks) {
 TEST(ConvGradient, OfSkipsPoolingAndUpsampling) {
   for (const bool plane : {false, true})
     for (const bool training : {false, true})
-      expect_central_differences(nested(plane), training);
+      for (const bool ends_in_block : {false, true})
+        expect_central_differences(nested(plane, ends_in_block), training);
 }
 
 TYPED_TEST(ConvTest, EvaluatedSamplesAreIndependentBitwise) {
