@@ -25,6 +25,7 @@ def reproduce(code, *arguments, cwd, campaigns=CAMPAIGNS):
 with tempfile.TemporaryDirectory() as d:
     planned = reproduce(0, *sorted(os.listdir(CAMPAIGNS)), "--dry-run", cwd=d)
     assert "no longer registered" not in planned, planned
+    assert "load their plug-in" in planned, planned  # studies/whose-bfgs-...
     assert f"{len(os.listdir(CAMPAIGNS))} campaigns" in planned, planned
     assert "give either" in reproduce(2, cwd=d)
     assert "no campaign 'none'" in reproduce(3, "none", cwd=d)
