@@ -128,18 +128,22 @@ std::string table_of(const Papers& papers,
          rows;
 }
 
-/// Of a study, a number of each setting: "SciPy 75.3 ± 4.03 (> 50)".
+/// Of a study, a number of each setting: "A 75 ± 4; B 42: no (each > 50)".
 std::string every_measured(const ClaimResult& claim) {
-  std::string out;
+  std::vector<std::string> numbers;
+  std::set<std::string> bounds;
   for (const ConditionResult& c : claim.conditions) {
     if (!c.value || c.bounds.empty()) continue;
-    out += fmt::format(
-        "{}{} {}", out.empty() ? "" : ", ", c.text(), value_text(*c.value));
-    if (c.spread) out += " ± " + value_text(*c.spread);
-    out +=
-        fmt::format(" ({}{})", c.bounds, c.holds.value_or(true) ? "" : ": no");
+    std::string number = c.text() + ' ' + value_text(*c.value);
+    if (c.spread) number += " ± " + value_text(*c.spread);
+    if (!c.holds.value_or(true)) number += ": no";
+    numbers.push_back(std::move(number));
+    bounds.insert(c.bounds);
   }
-  return markdown(out.empty() ? "not run" : out);
+  if (numbers.empty()) return "not run";
+  std::string out = fmt::format("{}", fmt::join(numbers, "; "));
+  if (bounds.size() == 1) out += " (each " + *bounds.begin() + ')';
+  return markdown(out);
 }
 
 /// The paper's question, and its main statements with what was measured.

@@ -296,11 +296,10 @@ TEST(Digest, AStudyOfAMainStatementHasTheNumberOfEverySetting) {
         .title = "A title",
         .question = "Does it?",
         .main_claims = {{"jpo/toy", "P1"}, {"studies/a-choice", "P1"}}}});
-  expect_words(
-      page,
-      {"[jpo/toy P1](docs/results/jpo-toy.md). a \\| b: **? "
-       "depends**, A 75 (> 50), B 42 ± 3 (> 50: no), [studies/a-choice "
-       "P1](docs/results/studies-a-choice.md).\n"});
+  expect_words(page,
+               {"[jpo/toy P1](docs/results/jpo-toy.md). a \\| b: **? "
+                "depends**, A 75; B 42 ± 3: no (each > 50), [studies/a-choice "
+                "P1](docs/results/studies-a-choice.md).\n"});
 }
 
 TEST(Digest, PagesTellWorkMadeAndSaved) {
