@@ -28,13 +28,8 @@ V<T> larger(V<T> a, V<T> b) {
 }
 
 template <class T, int N, bool kRelu>
-void normalise_cells(const NormShape& s,
-                     const NormColumns<T>& at,
-                     const T* parameters,
-                     Rows<const T> x,
-                     Rows<T> y,
-                     Index begin,
-                     Index end) {
+void normalise_cells(NormPass<T> of, Rows<T> y, Index begin, Index end) {
+  const auto& [s, at, parameters, x, none] = of;
   const Activation f = kRelu ? Activation::relu : s.activation;
   const NormCell<N> cell(s);
   for (Index c = 0; c < s.channels; ++c) {
@@ -56,15 +51,9 @@ void normalise_cells(const NormShape& s,
 // A ReLU's gate is known from u, which costs less than reading y again.
 
 template <class T, int N, bool kRelu>
-void sum_cells(const NormShape& s,
-               const NormColumns<T>& at,
-               const T* parameters,
-               Rows<const T> x,
-               Rows<const T> y,
-               Rows<const T> y_bar,
-               Index begin,
-               Index end,
-               T* sums) {
+void sum_cells(
+    NormPass<T> of, Rows<const T> y_bar, Index begin, Index end, T* sums) {
+  const auto& [s, at, parameters, x, y] = of;
   const Activation f = kRelu ? Activation::relu : s.activation;
   const NormCell<N> cell(s);
   const SampleMask<T> mask(x.samples);
@@ -97,16 +86,13 @@ void sum_cells(const NormShape& s,
 }
 
 template <class T, int N, bool kRelu>
-void pull_cells(const NormShape& s,
-                const NormColumns<T>& at,
-                const T* parameters,
+void pull_cells(NormPass<T> of,
                 const T* means,
-                Rows<const T> x,
-                Rows<const T> y,
                 Rows<const T> y_bar,
                 Rows<T> x_bar,
                 Index begin,
                 Index end) {
+  const auto& [s, at, parameters, x, y] = of;
   const Activation f = kRelu ? Activation::relu : s.activation;
   const NormCell<N> cell(s);
   const SampleMask<T> mask(x.samples);
@@ -261,31 +247,17 @@ void move_state(NormColumns<T> batch, Index channels, T* state) {
 }
 
 template <class T>
-void normalise(const NormShape& shape,
-               const NormColumns<T>& at,
-               const T* parameters,
-               Rows<const T> x,
-               Rows<T> y,
-               Index begin,
-               Index end) {
-  dispatch_norm(shape, [&]<int N, bool kRelu>() {
-    normalise_cells<T, N, kRelu>(shape, at, parameters, x, y, begin, end);
+void normalise(NormPass<T> of, Rows<T> y, Index begin, Index end) {
+  dispatch_norm(of.shape, [&]<int N, bool kRelu>() {
+    normalise_cells<T, N, kRelu>(of, y, begin, end);
   });
 }
 
 template <class T>
-void block_sums(const NormShape& shape,
-                const NormColumns<T>& at,
-                const T* parameters,
-                Rows<const T> x,
-                Rows<const T> y,
-                Rows<const T> y_bar,
-                Index begin,
-                Index end,
-                T* sums) {
-  dispatch_norm(shape, [&]<int N, bool kRelu>() {
-    sum_cells<T, N, kRelu>(
-        shape, at, parameters, x, y, y_bar, begin, end, sums);
+void block_sums(
+    NormPass<T> of, Rows<const T> y_bar, Index begin, Index end, T* sums) {
+  dispatch_norm(of.shape, [&]<int N, bool kRelu>() {
+    sum_cells<T, N, kRelu>(of, y_bar, begin, end, sums);
   });
 }
 
@@ -300,19 +272,14 @@ void combine_sums(const T* sums, Index blocks, Index channels, T* totals) {
 }
 
 template <class T>
-void pull_norm(const NormShape& shape,
-               const NormColumns<T>& at,
-               const T* parameters,
+void pull_norm(NormPass<T> of,
                const T* means,
-               Rows<const T> x,
-               Rows<const T> y,
                Rows<const T> y_bar,
                Rows<T> x_bar,
                Index begin,
                Index end) {
-  dispatch_norm(shape, [&]<int N, bool kRelu>() {
-    pull_cells<T, N, kRelu>(
-        shape, at, parameters, means, x, y, y_bar, x_bar, begin, end);
+  dispatch_norm(of.shape, [&]<int N, bool kRelu>() {
+    pull_cells<T, N, kRelu>(of, means, y_bar, x_bar, begin, end);
   });
 }
 

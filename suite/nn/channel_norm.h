@@ -58,28 +58,24 @@ void use_state(const T* state, Index channels, NormColumns<T> to);
 template <class T>
 void move_state(NormColumns<T> batch, Index channels, T* state);
 
-/// y at output positions [begin, end). Parameters: scales, then offsets.
+/// What the passes over normalised channels read.
 template <class T>
-void normalise(const NormShape& shape,
-               const NormColumns<T>& at,
-               const T* parameters,
-               Rows<const T> x,
-               Rows<T> y,
-               Index begin,
-               Index end);
+struct NormPass {
+  NormShape shape;
+  NormColumns<T> at;
+  const T* parameters;  ///< scales, then offsets
+  Rows<const T> x, y;
+};
+
+/// y at output positions [begin, end).
+template <class T>
+void normalise(NormPass<T> of, Rows<T> y, Index begin, Index end);
 
 /// The cotangent's sums over output positions [begin, end): sums = channels
 /// times sum of u_bar, then channels times sum of u_bar (x - mean) inverse.
 template <class T>
-void block_sums(const NormShape& shape,
-                const NormColumns<T>& at,
-                const T* parameters,
-                Rows<const T> x,
-                Rows<const T> y,
-                Rows<const T> y_bar,
-                Index begin,
-                Index end,
-                T* sums);
+void block_sums(
+    NormPass<T> of, Rows<const T> y_bar, Index begin, Index end, T* sums);
 
 /// totals = sum over blocks, in order and in double; divided by `count`.
 template <class T>
@@ -89,12 +85,8 @@ void combine_sums(const T* sums, Index blocks, Index channels, T* totals);
 /// sums' means over all samples and positions (zero outside training). Padding
 /// lanes become zero.
 template <class T>
-void pull_norm(const NormShape& shape,
-               const NormColumns<T>& at,
-               const T* parameters,
+void pull_norm(NormPass<T> of,
                const T* means,
-               Rows<const T> x,
-               Rows<const T> y,
                Rows<const T> y_bar,
                Rows<T> x_bar,
                Index begin,

@@ -22,12 +22,10 @@ struct NormDots {
 
 /// All that both passes read.
 template <class T>
-struct NormTangent {
-  NormShape shape;
-  NormColumns<T> at;
+struct NormTangent : NormPass<T> {
   NormDots<T> dots;
-  const T *parameters, *parameters_dot;  ///< scales, then offsets
-  Rows<const T> x, x_dot, y;
+  const T* parameters_dot;
+  Rows<const T> x_dot;
 };
 
 /// y_dot at output positions [begin, end).

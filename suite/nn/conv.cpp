@@ -175,10 +175,7 @@ class ConvBlock final : public Layer<T> {
     for_blocks(conv_.threads(at, x.samples),
                (outputs + some - 1) / some,
                [&](Index block, int) {
-                 normalise<T>(norm_,
-                              kept,
-                              parameters,
-                              z,
+                 normalise<T>({norm_, kept, parameters, z, {}},
                               y,
                               block * some,
                               std::min((block + 1) * some, outputs));
@@ -191,9 +188,10 @@ class ConvBlock final : public Layer<T> {
         kept_rows<T>(*at.tape, at.slot, conv_.outputs(), samples);
     const NormColumns<T> kept(at.tape->template view<T>(at.slot + 1).data(),
                               norm_.channels);
-    const T* parameters = at.parameters + conv_.parameter_count();
+    const NormPass<T> of{
+        norm_, kept, at.parameters + conv_.parameter_count(), z, b.y};
     const Workspace::Scope scope(*at.work);
-    const T* const means = pulled_means(at, b, kept, z);
+    const T* const means = pulled_means(at, b, of);
 
     const Rows<T> z_bar = take_rows<T>(*at.work, z.rows, samples);
     // Cells of whole rows, where pooling joins rows.
@@ -206,16 +204,8 @@ class ConvBlock final : public Layer<T> {
                     b.parameters_bar,
                     b.x_bar,
                     [&](Index begin, Index end) {
-                      pull_norm<T>(norm_,
-                                   kept,
-                                   parameters,
-                                   means,
-                                   z,
-                                   b.y,
-                                   b.y_bar,
-                                   z_bar,
-                                   begin / cell,
-                                   end / cell);
+                      pull_norm(
+                          of, means, b.y_bar, z_bar, begin / cell, end / cell);
                     });
     if (b.x_bar) apply_gate(b.gate, b.x_bar);
   }
@@ -243,19 +233,14 @@ class ConvBlock final : public Layer<T> {
   /// And the gradients by bias, scale and offset, which are their sums.
   const T* pulled_means(const Replay<T>& at,
                         const Backward<T>& b,
-                        const NormColumns<T>& kept,
-                        Rows<const T> z) const {
+                        const NormPass<T>& of) const {
     const Index channels = norm_.channels, samples = b.x.samples;
-    const T* parameters = at.parameters + conv_.parameter_count();
     const Index outputs = norm_.pooled().positions();
-    const Index some = conv_.per_block(z), blocks = (outputs + some - 1) / some;
+    const Index some = conv_.per_block(of.x),
+                blocks = (outputs + some - 1) / some;
     T* sums = at.work->template take<T>(2 * channels, blocks).data();
     for_blocks(conv_.threads(at, samples), blocks, [&](Index block, int) {
-      block_sums<T>(norm_,
-                    kept,
-                    parameters,
-                    z,
-                    b.y,
+      block_sums<T>(of,
                     b.y_bar,
                     block * some,
                     std::min((block + 1) * some, outputs),
@@ -268,8 +253,9 @@ class ConvBlock final : public Layer<T> {
       T *scale_bar = bias_bar + channels, *offset_bar = scale_bar + channels;
       for (Index c = 0; c < channels; ++c) {
         offset_bar[c] = means[c], scale_bar[c] = means[channels + c];
-        bias_bar[c] =
-            by_batch(at) ? T(0) : parameters[c] * kept.inverse[c] * means[c];
+        bias_bar[c] = by_batch(at)
+                          ? T(0)
+                          : of.parameters[c] * of.at.inverse[c] * means[c];
       }
     }
     // Outside training the statistics are constants.

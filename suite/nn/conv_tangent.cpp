@@ -30,16 +30,16 @@ struct Moving {
             *at.tape, at.slot, block.conv.outputs(), step.x.samples)),
         z_dot(kept_rows<T>(*step.dots, at.slot, z.rows, z.samples)),
         some(block.conv.per_block(z)),
-        of{.shape = block.norm,
-           .at = {at.tape->template view<T>(at.slot + 1).data(),
-                  block.norm.channels},
-           .dots = {step.dots->template view<T>(at.slot + 1).data(),
-                    block.norm.channels},
-           .parameters = at.parameters + block.conv.parameter_count(),
-           .parameters_dot = step.parameters_dot + block.conv.parameter_count(),
-           .x = z,
-           .x_dot = z_dot,
-           .y = step.y} {}
+        of{{.shape = block.norm,
+            .at = {at.tape->template view<T>(at.slot + 1).data(),
+                   block.norm.channels},
+            .parameters = at.parameters + block.conv.parameter_count(),
+            .x = z,
+            .y = step.y},
+           {step.dots->template view<T>(at.slot + 1).data(),
+            block.norm.channels},
+           step.parameters_dot + block.conv.parameter_count(),
+           z_dot} {}
 
   Index sums_size() const { return 2 * of.shape.channels; }
   Index blocks() const { return block.conv.blocks(z); }
@@ -52,7 +52,7 @@ struct Moving {
               Index end,
               T* sums) const {
     const NormShape plain{.grid = of.shape.grid, .channels = of.shape.channels};
-    block_sums<T>(plain, columns, of.parameters, x, x, bar, begin, end, sums);
+    block_sums<T>({plain, columns, of.parameters, x, x}, bar, begin, end, sums);
   }
   /// Room for the sums of all blocks.
   T* parts() const {
