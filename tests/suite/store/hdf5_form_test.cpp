@@ -58,6 +58,15 @@ std::string image_of_array(F&& choose) {
   });
 }
 
+std::string with_attribute(hid_t type, hid_t shape) {
+  return image_with([&](hid_t file) {
+    const hdf5::Handle made(
+        H5Acreate2(file, "of", type, shape, H5P_DEFAULT, H5P_DEFAULT),
+        H5Aclose,
+        "create an attribute");
+  });
+}
+
 void expect_refused(const std::string& image, const std::string& what) {
   const auto message = message_of<StoreError>([&] { hdf5::check_form(image); });
   EXPECT_TRUE(contains(message, what)) << message;
@@ -127,48 +136,24 @@ TEST(Hdf5Form, RefusesOtherEnumerationsAndNumbers) {
                                           "create an array");
                  }),
                  "a type of numbers");
+  const hdf5::Handle one(H5Screate(H5S_SCALAR), H5Sclose, "make a shape");
   for (const hid_t type : {H5T_STD_I64LE, H5T_STD_U64BE, H5T_IEEE_F64LE})
-    expect_refused(
-        image_with([&](hid_t file) {
-          const hdf5::Handle one(
-              H5Screate(H5S_SCALAR), H5Sclose, "make a shape");
-          const hdf5::Handle made(
-              H5Acreate2(file, "n", type, one, H5P_DEFAULT, H5P_DEFAULT),
-              H5Aclose,
-              "create an attribute");
-        }),
-        "an attribute");
+    expect_refused(with_attribute(type, one), "an attribute");
 }
 
 TEST(Hdf5Form, RefusesOtherListsAndTexts) {
-  const auto with_attribute = [](hid_t type, hsize_t size) {
-    return image_with([&](hid_t file) {
-      const hdf5::Handle made(
-          H5Acreate2(file, "of", type, list(size), H5P_DEFAULT, H5P_DEFAULT),
-          H5Aclose,
-          "create an attribute");
-    });
-  };
   // Statuses of today, and those that older programs knew.
-  hdf5::check_form(with_attribute(H5T_STD_I32LE, kStatuses.size()));
-  hdf5::check_form(with_attribute(H5T_STD_I32LE, 4));
-  expect_refused(with_attribute(H5T_STD_I32LE, kStatuses.size() + 1),
-                 "an attribute");
-  expect_refused(with_attribute(H5T_STD_I32LE, 0), "an attribute");
-  expect_refused(with_attribute(H5T_STD_U32LE, 4), "an attribute");
-  expect_refused(with_attribute(H5T_IEEE_F64LE, 4), "an attribute");
+  for (const hsize_t size : {kStatuses.size(), std::size_t{4}})
+    hdf5::check_form(with_attribute(H5T_STD_I32LE, list(size)));
+  for (const hsize_t size : {kStatuses.size() + 1, std::size_t{0}})
+    expect_refused(with_attribute(H5T_STD_I32LE, list(size)), "an attribute");
+  for (const hid_t type : {H5T_STD_U32LE, H5T_IEEE_F64LE})
+    expect_refused(with_attribute(type, list(4)), "an attribute");
   const hdf5::Handle padded(H5Tcopy(H5T_C_S1), H5Tclose, "make a type");
   H5Tset_size(padded, 8);
   H5Tset_strpad(padded, H5T_STR_SPACEPAD);
-  expect_refused(
-      image_with([&](hid_t file) {
-        const hdf5::Handle one(H5Screate(H5S_SCALAR), H5Sclose, "make a shape");
-        const hdf5::Handle made(
-            H5Acreate2(file, "of", padded, one, H5P_DEFAULT, H5P_DEFAULT),
-            H5Aclose,
-            "create an attribute");
-      }),
-      "an attribute");
+  const hdf5::Handle one(H5Screate(H5S_SCALAR), H5Sclose, "make a shape");
+  expect_refused(with_attribute(padded, one), "an attribute");
 }
 
 TEST(Hdf5Form, RefusesGroupsInACircle) {

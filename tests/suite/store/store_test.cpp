@@ -120,22 +120,32 @@ TEST_F(StoreTest, WhatWasAddedIsFoundAtOnceAndThereAfterACommit) {
                   sample_stage(info, k));
 }
 
-TEST_F(StoreTest, OfOneStageAddedTwiceTheFirstCounts) {
+/// Stages that wait for a commit and those that are committed one by one.
+class StoreOfBothWays : public StoreTest,
+                        public testing::WithParamInterface<bool> {
+ protected:
+  void put(Store& store, const StageRecord& stage) {
+    store.add(a_, sample_data(a_), stage);
+    if (GetParam()) store.commit();
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Ways, StoreOfBothWays, testing::Bool());
+
+TEST_P(StoreOfBothWays, OfOneStageTheFirstResultCounts) {
   Store store(out_.path());
-  for (const std::uint64_t run : {1U, 2U})
-    store.add(a_, sample_data(a_), sample_stage(a_, 0, run));
+  for (const std::uint64_t run : {1U, 2U}) put(store, sample_stage(a_, 0, run));
   store.finish();
   EXPECT_EQ(store.catalog().entries().size(), 1U);
   expect_same(*store.find(a_.keys[0]), sample_stage(a_, 0, 1));
 }
 
-TEST_F(StoreTest, AResultAddedAfterAFailureReplacesIt) {
+TEST_P(StoreOfBothWays, AResultReplacesAFailure) {
   Store store(out_.path());
   auto failed = sample_stage(a_, 0);
   failed.stop = Stop::failed;
-  store.add(a_, sample_data(a_), failed);
+  put(store, failed);
   EXPECT_EQ(store.find(a_.keys[0])->stop, Stop::failed);
-  store.add(a_, sample_data(a_), sample_stage(a_, 0));
+  put(store, sample_stage(a_, 0));
   EXPECT_TRUE(has_result(*store.find(a_.keys[0])));
   store.commit();
   expect_same(*Store::read_only(out_.path()).find(a_.keys[0]),
@@ -166,25 +176,6 @@ TEST_F(StoreTest, ACommitWritesTheFileOfACaseOnce) {
   const auto there = fs::file_size(store.catalog().case_path(a_.name)) +
                      fs::file_size(out_ / "journal.jsonl");
   EXPECT_LT(bytes_written() - before, there + there / 10);
-}
-
-TEST_F(StoreTest, StageIsKeptOnceAndTheFirstCounts) {
-  Store store(out_.path());
-  append(store, a_, 0, 1);
-  append(store, a_, 0, 2);
-  EXPECT_EQ(store.catalog().entries().size(), 1U);
-  expect_same(*store.find(a_.keys[0]), sample_stage(a_, 0, 1));
-}
-
-TEST_F(StoreTest, ResultReplacesAFailure) {
-  Store store(out_.path());
-  auto failed = sample_stage(a_, 0);
-  failed.stop = Stop::failed;
-  store.append(a_, sample_data(a_), failed);
-  EXPECT_EQ(store.find(a_.keys[0])->stop, Stop::failed);
-  append(store, a_, 0);
-  expect_same(*Store::read_only(out_.path()).find(a_.keys[0]),
-              sample_stage(a_, 0));
 }
 
 TEST_F(StoreTest, ChangedKeyReplacesAndItsFollowersAreOutdated) {
