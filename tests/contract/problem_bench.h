@@ -14,15 +14,23 @@ namespace physinv::test {
 /// A problem with its scratch, and its answers by value.
 template <class T>
 struct ProblemBench {
-  explicit ProblemBench(const ProblemRecipe& recipe)
+  explicit ProblemBench(const ProblemRecipe& recipe, Threads* threads = nullptr)
       : problem(recipe.make<T>()),
         vjp(dynamic_cast<const Vjp<T>*>(problem.get())),
-        jac(dynamic_cast<const Jacobian<T>*>(problem.get())) {}
+        jac(dynamic_cast<const Jacobian<T>*>(problem.get())),
+        tape(threads),
+        work(threads) {}
 
   Batch<T> forward(const Batch<T>& x, const Batch<T>& given) {
     Batch<T> seen(problem->shape().observations, x.cols());
     problem->forward({x, given}, seen, work);
     return seen;
+  }
+  Batch<T> jacobian(const Batch<T>& x, const Batch<T>& given) {
+    const Shape shape = problem->shape();
+    Batch<T> j(shape.observations * shape.unknowns, x.cols());
+    jac->jacobian({x, given}, j, work);
+    return j;
   }
   /// Leaves y of the linearization in `y`.
   Batch<T> pull(const Batch<T>& x,

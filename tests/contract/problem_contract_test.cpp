@@ -232,8 +232,7 @@ TEST_P(ProblemContract, JacobianAgreesWithPullback) {
     ProblemBench<T> b(recipe());
     const auto l = labelled().template cast<T>();
     const Index m = l.y.rows(), d = l.x.rows();
-    Batch<T> j(m * d, kCount);
-    b.jac->jacobian({l.x, l.given}, j, b.work);
+    const Batch<T> j = b.jacobian(l.x, l.given);
     const Batch<T> y_bar = directions<T>(m, kCount, 0.4);
     const Batch<T> x_bar = b.pull(l.x, l.given, y_bar);
     for (Index i = 0; i < kCount; ++i) {
@@ -324,14 +323,21 @@ TEST_P(ProblemContract, LossGradientAgreesWithCentralDifferences) {
 TEST_P(ProblemContract, BatchesEqualTheirColumnsInAnyOrderBitwise) {
   in_both([&](auto t) {
     using T = decltype(t);
-    ProblemBench<T> b(recipe());
+    Threads threads(3);
+    ProblemBench<T> b(recipe()), threaded(recipe(), &threads);
     const auto l = labelled().template cast<T>();
     const Batch<T> y_bar = directions<T>(l.y.rows(), kCount, 0.4);
     const Batch<T> y = b.forward(l.x, l.given);
-    Batch<T> x_bar;
+    EXPECT_TRUE(same_bits(threaded.forward(l.x, l.given), y));
+    Batch<T> x_bar, j;
     if (b.vjp != nullptr) {
       x_bar = b.pull(l.x, l.given, y_bar);
       EXPECT_TRUE(same_bits(b.y, y));
+      EXPECT_TRUE(same_bits(threaded.pull(l.x, l.given, y_bar), x_bar));
+    }
+    if (b.jac != nullptr) {
+      j = b.jacobian(l.x, l.given);
+      EXPECT_TRUE(same_bits(threaded.jacobian(l.x, l.given), j));
     }
     std::vector<std::vector<Index>> subsets;
     for (Index i = 0; i < kCount; ++i) subsets.push_back({i});
@@ -343,9 +349,11 @@ TEST_P(ProblemContract, BatchesEqualTheirColumnsInAnyOrderBitwise) {
         return Batch<T>(all(Eigen::all, some));
       };
       EXPECT_TRUE(same_bits(b.forward(of(l.x), of(l.given)), of(y)));
-      if (b.vjp == nullptr) continue;
-      EXPECT_TRUE(
-          same_bits(b.pull(of(l.x), of(l.given), of(y_bar)), of(x_bar)));
+      if (b.vjp != nullptr)
+        EXPECT_TRUE(
+            same_bits(b.pull(of(l.x), of(l.given), of(y_bar)), of(x_bar)));
+      if (b.jac != nullptr)
+        EXPECT_TRUE(same_bits(b.jacobian(of(l.x), of(l.given)), of(j)));
     }
   });
 }

@@ -370,27 +370,6 @@ TEST(Billiards, ExactSolutionsHitTheTarget) {
   }
 }
 
-TEST(Billiards, SamplesArePrefixesAndRepeat) {
-  const AnyProblem<double> problem(problems::billiards());
-  const Rng rng = Rng::root("test/billiards", 6);
-  for (bool labelled : {false, true}) {
-    const auto draw = [&](Index first, Index count, const Rng& from) {
-      return labelled ? problem.sample_labelled(first, count, from)
-                      : problem.sample(first, count, from);
-    };
-    const auto large = draw(0, 64, rng), small = draw(0, 5, rng);
-    const auto middle = draw(17, 8, rng);
-    EXPECT_EQ(content_hash(large), content_hash(draw(0, 64, rng)));
-    EXPECT_NE(content_hash(large),
-              content_hash(draw(0, 64, Rng::root("test/billiards", 7))));
-    EXPECT_TRUE(same_bits(Batch<double>(large.x.leftCols(5)), small.x));
-    EXPECT_TRUE(same_bits(Batch<double>(large.y.leftCols(5)), small.y));
-    EXPECT_TRUE(
-        same_bits(Batch<double>(large.given.middleCols(17, 8)), middle.given));
-    EXPECT_TRUE(same_bits(Batch<double>(large.x.middleCols(17, 8)), middle.x));
-  }
-}
-
 TEST(Billiards, SamplesHaveTheirDistributions) {
   const AnyProblem<double> problem(problems::billiards());
   constexpr Index n = 20000;

@@ -28,18 +28,6 @@ TEST(Oscillators, AnyNumberOfSteps) {
 }
 
 template <class T>
-void check_independent() {
-  const AnyProblem<T> pair(problems::oscillators());
-  const auto s = pair.sample_labelled(0, 37, kRng).template cast<T>();
-  expect_independent_samples<T>(pair, s.x, s.given);
-}
-
-TEST(Oscillators, ASampleDoesNotDependOnItsBatch) {
-  check_independent<float>();
-  check_independent<double>();
-}
-
-template <class T>
 void check_contained() {
   const AnyProblem<T> pair(problems::oscillators());
   const auto s = pair.sample_labelled(0, 19, kRng).template cast<T>();

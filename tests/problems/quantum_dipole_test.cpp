@@ -40,18 +40,6 @@ TEST(QuantumDipole, AnyNumberOfSteps) {
 }
 
 template <class T>
-void check_independent() {
-  const AnyProblem<T> box(problems::quantum_dipole());
-  expect_independent_samples<T>(
-      box, controls(384, 37, 0.3).template cast<T>(), none<T>(37));
-}
-
-TEST(QuantumDipole, ASampleDoesNotDependOnItsBatch) {
-  check_independent<float>();
-  check_independent<double>();
-}
-
-template <class T>
 void check_contained() {
   const AnyProblem<T> box(problems::quantum_dipole());
   const Batch<T> good = controls(384, 19, 0.1).template cast<T>();

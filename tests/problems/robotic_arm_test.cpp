@@ -116,23 +116,6 @@ TYPED_TEST(RoboticArmIn, PullbackIsTheTransposedJacobian) {
   }
 }
 
-TYPED_TEST(RoboticArmIn, BitsDependNeitherOnPositionNorOnBatch) {
-  using T = TypeParam;
-  const Batch<T> x = draw(75).x.template cast<T>();
-  const Batch<T> y_bar = draw(75, 2).y.template cast<T>();
-  const Batch<T> y = tips(x), x_bar = pulled(x, y_bar), j = jacobians(x);
-  for (const Index size : {1, 7, 64}) {
-    for (Index first = 0; first + size <= 75; first += size) {
-      const auto part = [&](const Batch<T>& all) {
-        return Batch<T>(all.middleCols(first, size).rowwise().reverse());
-      };
-      EXPECT_TRUE(same_bits(tips(part(x)), part(y)));
-      EXPECT_TRUE(same_bits(pulled(part(x), part(y_bar)), part(x_bar)));
-      EXPECT_TRUE(same_bits(jacobians(part(x)), part(j)));
-    }
-  }
-}
-
 TYPED_TEST(RoboticArmIn, ReadsAndWritesBlocksOfLargerMatrices) {
   using T = TypeParam;
   const Batch<T> x = draw(20).x.template cast<T>();
