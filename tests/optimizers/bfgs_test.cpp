@@ -3,15 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <vector>
 
-#include "optimizers/drive.h"
 #include "optimizers/steps/bfgs_update.h"
 #include "suite/core/check.h"
-#include "tests/optimizers/functions.h"
-#include "tests/support/bits.h"
+#include "tests/optimizers/solver_checks.h"
 #include "tests/support/gradient_check.h"
 #include "tests/support/jpo_entries.h"
 #include "tests/support/run_reference.h"
@@ -21,32 +18,11 @@ namespace {
 
 using test::Billiards;
 using test::ClosedForm;
+using test::single;
+using test::starts;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 const std::string kId = "jpo-billiards";
-
-/// n starting points in [-3, 3]^d without a random generator.
-Batch<double> starts(Index d, Index n) {
-  Batch<double> x(d, n);
-  for (Index i = 0; i < x.size(); ++i)
-    x(i) = 3 * std::sin(1.3 * static_cast<double>(i * i) + 0.4);
-  return x;
-}
-
-/// A single problem given as f(x, gradient) -> loss.
-template <class F>
-auto single(F f) {
-  return [f](std::span<const Index>,
-             BatchIn<double> x,
-             VectorOut<double> loss,
-             BatchOut<double> gradient) {
-    for (Index i = 0; i < x.cols(); ++i) {
-      Vector<double> g = Vector<double>::Zero(x.rows());
-      loss(i) = f(Vector<double>(x.col(i)), g);
-      gradient.col(i) = g;
-    }
-  };
-}
 
 template <class F>
 Bfgs solve(F&& objective, BatchIn<double> x0, BfgsOptions options = {}) {
@@ -91,39 +67,14 @@ TEST(Bfgs, TestFunctionsHaveTheirGradients) {
 }
 
 TEST(Bfgs, BatchEqualsSoloRunsAndPermutationsBitwise) {
-  const Index n = 37;
-  for (const Index d : {1, 2, 3, 7}) {
-    for (const char* name : {"wavy", "rough", "rosenbrock"}) {
-      const Batch<double> x0 = starts(d, n);
-      const Bfgs all = solve(ClosedForm{name}, x0);
-      const Bfgs reversed = solve(ClosedForm{name}, x0.rowwise().reverse());
-      for (Index i = 0; i < n; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        const auto mirror = static_cast<std::size_t>(n - 1 - i);
-        const Bfgs one = solve(ClosedForm{name}, x0.col(i));
-        const auto bytes = static_cast<std::size_t>(d) * sizeof(double);
-        EXPECT_EQ(std::memcmp(all.x().col(i).data(), one.x().data(), bytes), 0);
-        EXPECT_EQ(std::memcmp(all.x().col(i).data(),
-                              reversed.x().col(n - 1 - i).data(),
-                              bytes),
-                  0);
-        EXPECT_EQ(all.loss()(i), one.loss()(0));
-        EXPECT_EQ(all.status()[at], one.status()[0]);
-        EXPECT_EQ(all.status()[at], reversed.status()[mirror]);
-        EXPECT_EQ(all.evaluations()[at], one.evaluations()[0]);
-        EXPECT_EQ(all.iterations()[at], reversed.iterations()[mirror]);
-      }
-    }
-  }
+  for (const Index d : {1, 2, 3, 7})
+    for (const char* name : {"wavy", "rough", "rosenbrock"})
+      test::expect_independent_problems<Bfgs>(
+          name, starts(d, 37), BfgsOptions{});
 }
 
-TEST(Bfgs, CountsWhatFinishedProblemsSave) {
-  const Index n = 20;
-  const Bfgs all = solve(ClosedForm{"rosenbrock"}, starts(2, n));
-  std::uint64_t made = 0;
-  for (const Index e : all.evaluations()) made += static_cast<std::uint64_t>(e);
-  EXPECT_EQ(made + all.skipped_evaluations(),
-            static_cast<std::uint64_t>(n * all.rounds()));
+TEST(Bfgs, FinishedProblemsSaveEvaluations) {
+  const Bfgs all = solve(ClosedForm{"rosenbrock"}, starts(2, 20));
   EXPECT_GT(all.skipped_evaluations(), 0U);
 }
 
@@ -213,33 +164,7 @@ TEST(Bfgs, NonFiniteStart) {
 }
 
 TEST(Bfgs, AStartThatIsNotFiniteIsLeftAsItIs) {
-  // An objective that would find it acceptable.
-  const auto blind = single([](const Vector<double>& x, Vector<double>& g) {
-    EXPECT_TRUE(x.allFinite());
-    g(0) = 2 * x(0);
-    return x(0) * x(0);
-  });
-  const Batch<double> good = starts(2, 3);
-  const Bfgs alone = solve(blind, good);
-  for (const double bad : {kNan, kInf, -kInf}) {
-    Batch<double> x0(2, 5);
-    x0 << good.leftCols(1), good;
-    x0.col(0) << 0.5, bad;
-    x0.col(4) << bad, bad;
-    x0.middleCols(1, 3) = good;
-    const Bfgs b = solve(blind, x0);
-    for (const std::size_t i : {std::size_t{0}, std::size_t{4}}) {
-      EXPECT_EQ(b.status()[i], Status::nonfinite);
-      EXPECT_EQ(b.evaluations()[i], 0);
-      EXPECT_EQ(b.iterations()[i], 0);
-    }
-    EXPECT_TRUE(test::same_bits(Batch<double>(b.x()(Eigen::all, {0, 4})),
-                                Batch<double>(x0(Eigen::all, {0, 4}))));
-    EXPECT_TRUE(
-        test::same_bits(Batch<double>(b.x().middleCols(1, 3)), alone.x()));
-    EXPECT_EQ(b.status()[2], alone.status()[1]);
-    EXPECT_EQ(solve(blind, Batch<double>::Constant(2, 2, bad)).rounds(), 0);
-  }
+  test::expect_bad_starts_stay<Bfgs>(BfgsOptions{});
 }
 
 /// Counts what is evaluated, and what of it was the point before, per problem.

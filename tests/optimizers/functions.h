@@ -69,6 +69,30 @@ struct ClosedForm {
   }
 };
 
+/// A single problem given as f(x, gradient) -> loss, as a batch objective. The
+/// gradient is zero where f sets none.
+template <class F>
+auto single(F f) {
+  return [f](std::span<const Index>,
+             BatchIn<double> x,
+             VectorOut<double> loss,
+             BatchOut<double> gradient) {
+    for (Index i = 0; i < x.cols(); ++i) {
+      Vector<double> g = Vector<double>::Zero(x.rows());
+      loss(i) = f(Vector<double>(x.col(i)), g);
+      gradient.col(i) = g;
+    }
+  };
+}
+
+/// n starting points in [-3, 3]^d without a random generator.
+inline Batch<double> starts(Index d, Index n) {
+  Batch<double> x(d, n);
+  for (Index i = 0; i < x.size(); ++i)
+    x(i) = 3 * std::sin(1.3 * static_cast<double>(i * i) + 0.4);
+  return x;
+}
+
 /// Two billiard balls: cue from (0, 0.5) with velocity x, the other ball of
 /// problem i at rest at balls.col(i), target (2, 0.5). Drag 0.4, elasticity
 /// 0.8, radius 0.2; a miss has the loss of the resting ball and no gradient.

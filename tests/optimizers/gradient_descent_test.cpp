@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -21,6 +20,7 @@ namespace {
 using test::Billiards;
 using test::ClosedForm;
 using test::same_bits;
+using test::single;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(GradientDescentReference, Billiards) {
@@ -132,15 +132,10 @@ TEST(GradientDescent, DescendsAndConverges) {
 
 TEST(GradientDescent, NonFiniteTrialsShortenTheStep) {
   // Everything beyond 1 is NaN; the first step of 0.1 * 20 lands there.
-  const auto wall = [](std::span<const Index>,
-                       BatchIn<double> x,
-                       VectorOut<double> loss,
-                       BatchOut<double> gradient) {
-    for (Index i = 0; i < x.cols(); ++i) {
-      loss(i) = x(0, i) > 1 ? kNan : -20 * x(0, i);
-      gradient(0, i) = -20;
-    }
-  };
+  const auto wall = single([](const Vector<double>& x, Vector<double>& g) {
+    g(0) = -20;
+    return x(0) > 1 ? kNan : -20 * x(0);
+  });
   GradientDescent gd({.maxiter = 5});
   drive(gd, wall, Batch<double>::Zero(1, 2));
   EXPECT_TRUE(gd.x().allFinite());
@@ -150,15 +145,10 @@ TEST(GradientDescent, NonFiniteTrialsShortenTheStep) {
 
 TEST(GradientDescent, UselessDirectionsDiverge) {
   // The gradient points the wrong way: no step lowers the loss.
-  const auto wrong = [](std::span<const Index>,
-                        BatchIn<double> x,
-                        VectorOut<double> loss,
-                        BatchOut<double> gradient) {
-    for (Index i = 0; i < x.cols(); ++i) {
-      loss(i) = 1e9 * x(0, i);
-      gradient(0, i) = -1e9;
-    }
-  };
+  const auto wrong = single([](const Vector<double>& x, Vector<double>& g) {
+    g(0) = -1e9;
+    return 1e9 * x(0);
+  });
   GradientDescent gd({.first_step = 1e9, .substeps = 3});
   drive(gd, wrong, Batch<double>::Zero(1, 1));
   EXPECT_EQ(gd.status()[0], Status::linesearch);
@@ -167,13 +157,10 @@ TEST(GradientDescent, UselessDirectionsDiverge) {
 }
 
 TEST(GradientDescent, NonFiniteStart) {
-  const auto nan = [](std::span<const Index>,
-                      BatchIn<double>,
-                      VectorOut<double> loss,
-                      BatchOut<double> gradient) {
-    loss.setConstant(kNan);
-    gradient.setConstant(kNan);
-  };
+  const auto nan = single([](const Vector<double>&, Vector<double>& g) {
+    g.setConstant(kNan);
+    return kNan;
+  });
   for (const bool skip : {false, true}) {
     GradientDescent gd({.skip_zero_gradient = skip});
     drive(gd, nan, Batch<double>::Ones(2, 3));
@@ -216,31 +203,22 @@ TEST(GradientDescent, AStartWithoutAGradientHasItsLoss) {
   EXPECT_TRUE(same_bits(Batch<double>(gd.x().rightCols(1)), alone.x()));
 }
 
-/// Finite everywhere, at infinity too, where it is lowest.
-void slope_to_infinity(std::span<const Index>,
-                       BatchIn<double> x,
-                       VectorOut<double> loss,
-                       BatchOut<double> gradient) {
-  for (Index i = 0; i < x.cols(); ++i) {
-    loss(i) = std::isnan(x(0, i)) ? 0 : std::tanh(-x(0, i));
-    gradient.col(i).setConstant(-1e300);
-  }
-}
-
 template <class Solver>
 void expect_finite_paths() {
+  // Finite everywhere, at infinity too, where it is lowest.
+  const auto slope = single([](const Vector<double>& x, Vector<double>& g) {
+    g.setConstant(-1e300);
+    return std::isnan(x(0)) ? 0 : std::tanh(-x(0));
+  });
   for (const double bad : {kNan, HUGE_VAL, -HUGE_VAL}) {
     Batch<double> x0(2, 3);
     x0 << 0.5, bad, 1, bad, 0.25, 1.7e308;
     Solver solver;
     drive(
         solver,
-        [](std::span<const Index> active,
-           BatchIn<double> x,
-           VectorOut<double> loss,
-           BatchOut<double> gradient) {
+        [&](std::span<const Index> active, auto&&... in_and_out) {
           for (const Index i : active) EXPECT_EQ(i, 2);
-          slope_to_infinity(active, x, loss, gradient);
+          slope(active, in_and_out...);
         },
         x0);
     for (std::size_t i = 0; i < 2; ++i) {
@@ -286,15 +264,10 @@ TEST(GradientDescent, RefusesOptionsThatAreNoNumbers) {
 }
 
 /// 1/2 |x|^2, and no number left of -1.
-void bowl(std::span<const Index>,
-          BatchIn<double> x,
-          VectorOut<double> loss,
-          BatchOut<double> gradient) {
-  for (Index i = 0; i < x.cols(); ++i) {
-    loss(i) = x(0, i) < -1 ? kNan : 0.5 * x.col(i).squaredNorm();
-    gradient.col(i) = x.col(i);
-  }
-}
+const auto bowl = single([](const Vector<double>& x, Vector<double>& g) {
+  g = x;
+  return x(0) < -1 ? kNan : 0.5 * x.squaredNorm();
+});
 
 TEST(BoldDescent, WalksByItsRule) {
   BoldDescent gd({.evaluations = 4});

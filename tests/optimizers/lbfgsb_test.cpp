@@ -5,8 +5,7 @@
 #include <limits>
 
 #include "suite/core/check.h"
-#include "tests/optimizers/functions.h"
-#include "tests/support/bits.h"
+#include "tests/optimizers/solver_checks.h"
 #include "tests/support/run_reference.h"
 
 namespace physinv {
@@ -14,16 +13,10 @@ namespace {
 
 using test::ClosedForm;
 using test::Json;
+using test::single;
+using test::starts;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
-
-/// Start j of a batch: spread over [-3, 3]^d.
-Batch<double> starts(Index d, Index n) {
-  Batch<double> x(d, n);
-  for (Index i = 0; i < x.size(); ++i)
-    x(i) = 3 * std::sin(1.3 * static_cast<double>(i * i) + 0.4);
-  return x;
-}
 
 /// What SciPy calls success is one of three: the gradient is small, the loss
 /// hardly fell, or a step to the start itself left it as it is.
@@ -89,40 +82,16 @@ TEST(LbfgsbReference, EveryIterateAndCountIsThatOfSciPy) {
   test::check_entries("lbfgsb", {{"lbfgsb", check}});
 }
 
-Lbfgsb solve(const std::string& name,
-             BatchIn<double> x0,
-             LbfgsbOptions o = {}) {
-  Lbfgsb solver(std::move(o));
-  drive(solver, ClosedForm{name}, x0);
-  return solver;
+Lbfgsb solve(const char* name, BatchIn<double> x0, const LbfgsbOptions& o) {
+  return test::solved<Lbfgsb>(ClosedForm{name}, x0, o);
 }
 
 TEST(Lbfgsb, BatchEqualsSoloRunsAndPermutationsBitwise) {
-  const Index n = 23;
   const LbfgsbOptions boxed{.memory = 3, .lower = {-2}, .upper = {0.9}};
-  for (const LbfgsbOptions& options : {LbfgsbOptions{}, boxed}) {
-    for (const Index d : {1, 2, 7}) {
-      for (const char* name : {"wavy", "rosenbrock", "quadratic"}) {
-        const Batch<double> x0 = starts(d, n);
-        const Lbfgsb all = solve(name, x0, options);
-        const Lbfgsb reversed = solve(name, x0.rowwise().reverse(), options);
-        Index made = 0;
-        for (Index i = 0; i < n; ++i) {
-          const auto at = static_cast<std::size_t>(i);
-          const Lbfgsb one = solve(name, x0.col(i), options);
-          const Vector<double> x = all.x().col(i),
-                               mirror = reversed.x().col(n - 1 - i);
-          EXPECT_TRUE(test::same_bits(x, Vector<double>(one.x().col(0))));
-          EXPECT_TRUE(test::same_bits(x, mirror));
-          EXPECT_EQ(all.status()[at], one.status()[0]);
-          EXPECT_EQ(all.evaluations()[at], one.evaluations()[0]);
-          made += all.evaluations()[at];
-        }
-        EXPECT_EQ(static_cast<std::uint64_t>(made) + all.skipped_evaluations(),
-                  static_cast<std::uint64_t>(n * all.rounds()));
-      }
-    }
-  }
+  for (const LbfgsbOptions& options : {LbfgsbOptions{}, boxed})
+    for (const Index d : {1, 2, 7})
+      for (const char* name : {"wavy", "rosenbrock", "quadratic"})
+        test::expect_independent_problems<Lbfgsb>(name, starts(d, 23), options);
 }
 
 TEST(Lbfgsb, IteratesStayInTheBoxAndDescend) {
@@ -143,16 +112,10 @@ TEST(Lbfgsb, IteratesStayInTheBoxAndDescend) {
 }
 
 TEST(Lbfgsb, ValuesThatAreNotFiniteAreNeverAccepted) {
-  const auto walled = [](std::span<const Index>,
-                         BatchIn<double> x,
-                         VectorOut<double> loss,
-                         BatchOut<double> gradient) {
-    for (Index i = 0; i < x.cols(); ++i) {
-      loss(i) = 4 * x(0, i) - std::log(x(0, i));
-      gradient(0, i) = 4 - 1 / x(0, i);
-      if (x(0, i) < 0) loss(i) = kNan;
-    }
-  };
+  const auto walled = single([](const Vector<double>& x, Vector<double>& g) {
+    g(0) = 4 - 1 / x(0);
+    return x(0) < 0 ? kNan : 4 * x(0) - std::log(x(0));
+  });
   Lbfgsb solver;
   drive(solver, walled, starts(1, 40).cwiseAbs().array() + 0.02);
   EXPECT_TRUE(solver.x().allFinite());
@@ -165,15 +128,10 @@ TEST(Lbfgsb, ValuesThatAreNotFiniteAreNeverAccepted) {
 
 // The gradient points uphill, so that no step lowers the loss.
 TEST(Lbfgsb, ASearchThatFindsNoStepHasNotConverged) {
-  const auto wrong = [](std::span<const Index>,
-                        BatchIn<double> x,
-                        VectorOut<double> loss,
-                        BatchOut<double> gradient) {
-    for (Index i = 0; i < x.cols(); ++i) {
-      loss(i) = x(0, i);
-      gradient(0, i) = -1;
-    }
-  };
+  const auto wrong = single([](const Vector<double>& x, Vector<double>& g) {
+    g(0) = -1;
+    return x(0);
+  });
   Lbfgsb solver;
   drive(solver, wrong, Batch<double>::Ones(1, 1));
   EXPECT_EQ(solver.status()[0], Status::linesearch);
@@ -183,15 +141,10 @@ TEST(Lbfgsb, ASearchThatFindsNoStepHasNotConverged) {
 
 TEST(Lbfgsb, APlateauAndAMinimumAreToldApart) {
   // 1 + x^4: the loss hardly falls long before the gradient is small.
-  const auto valley = [](std::span<const Index>,
-                         BatchIn<double> x,
-                         VectorOut<double> loss,
-                         BatchOut<double> gradient) {
-    for (Index i = 0; i < x.cols(); ++i) {
-      loss(i) = 1 + std::pow(x(0, i), 4);
-      gradient(0, i) = 4 * std::pow(x(0, i), 3);
-    }
-  };
+  const auto valley = single([](const Vector<double>& x, Vector<double>& g) {
+    g(0) = 4 * std::pow(x(0), 3);
+    return 1 + std::pow(x(0), 4);
+  });
   const Batch<double> x0 = Batch<double>::Constant(1, 1, 2);
   Lbfgsb plateau({.pgtol = 1e-12});
   drive(plateau, valley, x0);
@@ -206,15 +159,11 @@ TEST(Lbfgsb, APlateauAndAMinimumAreToldApart) {
 // A wall of +inf or NaN: the search without a step ends where it began.
 TEST(Lbfgsb, WallsAreNoMinima) {
   for (const double wall : {kInf, kNan}) {
-    const auto walled = [wall](std::span<const Index>,
-                               BatchIn<double> x,
-                               VectorOut<double> loss,
-                               BatchOut<double> gradient) {
-      for (Index i = 0; i < x.cols(); ++i) {
-        loss(i) = x(0, i) > 0 ? wall : -x(0, i);
-        gradient(0, i) = -1;
-      }
-    };
+    const auto walled =
+        single([wall](const Vector<double>& x, Vector<double>& g) {
+          g(0) = -1;
+          return x(0) > 0 ? wall : -x(0);
+        });
     Lbfgsb solver;
     drive(solver, walled, Batch<double>::Zero(1, 1));
     EXPECT_EQ(solver.status()[0], Status::nonfinite);
@@ -223,67 +172,26 @@ TEST(Lbfgsb, WallsAreNoMinima) {
 }
 
 TEST(Lbfgsb, AStartThatIsNotFiniteIsLeftAsItIs) {
-  const auto blind = [](std::span<const Index>,
-                        BatchIn<double> x,
-                        VectorOut<double> loss,
-                        BatchOut<double> gradient) {
-    EXPECT_TRUE(x.allFinite());
-    gradient.setZero();
-    for (Index i = 0; i < x.cols(); ++i) {
-      loss(i) = x(0, i) * x(0, i);
-      gradient(0, i) = 2 * x(0, i);
-    }
-  };
   const LbfgsbOptions boxed{.lower = {-2}, .upper = {0.9}};
   const LbfgsbOptions below{.lower = {-2}};
-  const Batch<double> good = starts(2, 3);
-  for (const LbfgsbOptions& options : {LbfgsbOptions{}, boxed, below}) {
-    Lbfgsb alone(options);
-    drive(alone, blind, good);
-    for (const double bad : {kNan, kInf, -kInf}) {
-      Batch<double> x0(2, 4);
-      x0.col(0) << 0.5, bad;
-      x0.rightCols(3) = good;
-      Lbfgsb solver(options);
-      drive(solver, blind, x0);
-      EXPECT_EQ(solver.status()[0], Status::nonfinite);
-      EXPECT_EQ(solver.evaluations()[0], 0);
-      EXPECT_EQ(solver.iterations()[0], 0);
-      EXPECT_TRUE(test::same_bits(Vector<double>(solver.x().col(0)),
-                                  Vector<double>(x0.col(0))));
-      EXPECT_TRUE(
-          test::same_bits(Batch<double>(solver.x().rightCols(3)), alone.x()));
-      EXPECT_EQ(solver.status()[1], alone.status()[0]);
-    }
-  }
+  for (const LbfgsbOptions& options : {LbfgsbOptions{}, boxed, below})
+    test::expect_bad_starts_stay<Lbfgsb>(options);
 }
 
 TEST(Lbfgsb, EvaluatesNoPointTwiceInARow) {
   // At the bound already: the step has no length, its point is the start.
-  const auto flat = [](std::span<const Index>,
-                       BatchIn<double> x,
-                       VectorOut<double> loss,
-                       BatchOut<double> gradient) {
-    for (Index i = 0; i < x.cols(); ++i) {
-      loss(i) = 1 + 1e-20 * x(0, i);
-      gradient(0, i) = 1;
-    }
-  };
+  Vector<double> last;
+  const auto flat = single([&](const Vector<double>& x, Vector<double>& g) {
+    EXPECT_FALSE(last.size() > 0 && test::same_bits(last, x));
+    last = x;
+    g(0) = 1;
+    return 1 + 1e-20 * x(0);
+  });
   Lbfgsb solver({.lower = {-1e-30}});
   std::vector<Index> seen;
-  Vector<double> last;
-  drive(
-      solver,
-      [&](std::span<const Index> active,
-          BatchIn<double> x,
-          VectorOut<double> loss,
-          BatchOut<double> gradient) {
-        EXPECT_FALSE(last.size() > 0 && test::same_bits(last, x.col(0).eval()));
-        last = x.col(0);
-        flat(active, x, loss, gradient);
-      },
-      Batch<double>::Ones(1, 1),
-      [&](const Lbfgsb& s) { seen.push_back(s.iterations()[0]); });
+  drive(solver, flat, Batch<double>::Ones(1, 1), [&](const Lbfgsb& s) {
+    seen.push_back(s.iterations()[0]);
+  });
   for (std::size_t k = 0; k < seen.size(); ++k)
     EXPECT_EQ(seen[k], static_cast<Index>(k));
 }
