@@ -252,20 +252,6 @@ TYPED_TEST(BilliardsIn, BitsDependNeitherOnPositionNorOnBatch) {
   }
 }
 
-TYPED_TEST(BilliardsIn, ReadsAndWritesBlocksOfLargerMatrices) {
-  using T = TypeParam;
-  Batch<T> x, given;
-  mixed_batch<T>(20, x, given);
-  Batch<T> big(5, 30), out = Batch<T>::Constant(7, 30, T(-3));
-  big.block(1, 4, 2, 20) = x;
-  const AnyProblem<T> problem(problems::billiards());
-  Workspace work;
-  problem.forward(big.block(1, 4, 2, 20), given, out.block(2, 6, 2, 20), work);
-  EXPECT_TRUE(
-      same_bits(Batch<T>(out.block(2, 6, 2, 20)), evaluate<T>(x, given).y));
-  EXPECT_EQ((out.array() == T(-3)).count(), 7 * 30 - 2 * 20);
-}
-
 TYPED_TEST(BilliardsIn, CountsWhatItSkips) {
   using T = TypeParam;
   Batch<T> x, given;

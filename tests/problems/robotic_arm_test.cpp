@@ -116,21 +116,6 @@ TYPED_TEST(RoboticArmIn, PullbackIsTheTransposedJacobian) {
   }
 }
 
-TYPED_TEST(RoboticArmIn, ReadsAndWritesBlocksOfLargerMatrices) {
-  using T = TypeParam;
-  const Batch<T> x = draw(20).x.template cast<T>();
-  Batch<T> big(7, 30), out = Batch<T>::Constant(5, 30, T(-3));
-  big.block(1, 4, 4, 20) = x;
-  Workspace work;
-  AnyProblem<T>(problems::robotic_arm())
-      .forward(big.block(1, 4, 4, 20),
-               Batch<T>(0, 20),
-               out.block(2, 6, 2, 20),
-               work);
-  EXPECT_TRUE(same_bits(Batch<T>(out.block(2, 6, 2, 20)), tips(x)));
-  EXPECT_EQ((out.array() == T(-3)).count(), 5 * 30 - 2 * 20);
-}
-
 TYPED_TEST(RoboticArmIn, EmptyBatchesAndMemory) {
   using T = TypeParam;
   const AnyProblem<T> arm(problems::robotic_arm());

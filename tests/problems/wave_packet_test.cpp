@@ -176,23 +176,6 @@ TYPED_TEST(WavePacketIn, TheDisturbanceIsAdded) {
                                                     signals(x) + given));
 }
 
-TYPED_TEST(WavePacketIn, ReadsAndWritesBlocksOfLargerMatrices) {
-  using T = TypeParam;
-  const auto s = draw(20).template cast<T>();
-  Batch<T> big(3, 30), given(300, 25), out = Batch<T>::Constant(301, 30, -3);
-  big.block(1, 4, 1, 20) = s.x;
-  given.block(7, 2, kSamples, 20) = s.given;
-  Workspace work;
-  AnyProblem<T>(problems::wave_packet())
-      .forward(big.block(1, 4, 1, 20),
-               given.block(7, 2, kSamples, 20),
-               out.block(3, 6, kSamples, 20),
-               work);
-  EXPECT_TRUE(same_bits(Batch<T>(out.block(3, 6, kSamples, 20)),
-                        signals<T>(s.x, s.given)));
-  EXPECT_EQ((out.array() == T(-3)).count(), 301 * 30 - kSamples * 20);
-}
-
 TYPED_TEST(WavePacketIn, EmptyBatchesAndMemory) {
   using T = TypeParam;
   const AnyProblem<T> packet(problems::wave_packet());
