@@ -126,23 +126,19 @@ void expect_same_end(const Solver& a, const Solver& b) {
   EXPECT_EQ(a.evaluations(), b.evaluations());
 }
 
+template <class Solver>
+void expect_saved_evaluations(Solver with) {
+  Solver without(with);
+  Oracle a = make_oracle(), b = make_oracle();
+  const auto made = solve(with, a, false), full = solve(without, b, true);
+  expect_same_end(with, without);
+  EXPECT_GT(with.skipped_evaluations(), 0U);
+  EXPECT_EQ(made + with.skipped_evaluations(), full);
+}
+
 TEST(Skip, EvaluationsOfFinishedProblems) {
-  {
-    Bfgs with, without;
-    Oracle a = make_oracle(), b = make_oracle();
-    const auto made = solve(with, a, false), full = solve(without, b, true);
-    expect_same_end(with, without);
-    EXPECT_GT(with.skipped_evaluations(), 0U);
-    EXPECT_EQ(made + with.skipped_evaluations(), full);
-  }
-  {
-    GradientDescent with({.skip_zero_gradient = false}), without(with);
-    Oracle a = make_oracle(), b = make_oracle();
-    const auto made = solve(with, a, false), full = solve(without, b, true);
-    expect_same_end(with, without);
-    EXPECT_GT(with.skipped_evaluations(), 0U);
-    EXPECT_EQ(made + with.skipped_evaluations(), full);
-  }
+  expect_saved_evaluations(Bfgs());
+  expect_saved_evaluations(GradientDescent({.skip_zero_gradient = false}));
 }
 
 TEST(Skip, TrialsAlongZeroGradients) {

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <sys/mount.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 
 #include <chrono>
 #include <csignal>
+#include <functional>
 #include <map>
 #include <set>
 #include <thread>
@@ -22,45 +24,52 @@ namespace fs = std::filesystem;
 
 constexpr int kSkip = 77;
 
-/// Appends to a store on a file system of 256 KiB until it is full.
-int fill_small_disk(const fs::path& out) {
-  if (unshare(CLONE_NEWNS) != 0 ||
-      mount("", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
-      mount("tmpfs", out.c_str(), "tmpfs", 0, "size=256k") != 0)
-    return kSkip;
+/// A disk that becomes full and gets room again.
+struct Disk {
+  std::function<void()> fill, make_room;
+  std::vector<std::string> words;  ///< of the error
+  Index numbers;                   ///< of a stage
+};
+
+/// Appends until the disk is full, then checks that the store says so, is whole
+/// and goes on once there is room. 0 if so.
+int fill_the_disk(const fs::path& out, const Disk& disk) {
   std::string message;
   std::size_t kept = 0;
+  const auto append = [&](Store& store) {
+    const auto info = sample_case("jpo", 4, kept);
+    store.append(
+        info, sample_data(info), sample_stage(info, 0, 0, disk.numbers));
+  };
   {
     Store store(out);
-    for (std::uint64_t seed = 0; seed < 100 && message.empty(); ++seed) {
-      const auto info = sample_case("jpo", 4, seed);
+    while (kept < 100 && message.empty()) {
+      if (kept == 2) disk.fill();
       try {
-        store.append(info, sample_data(info), sample_stage(info, 0, 0, 3000));
-        ++kept;
+        append(store), ++kept;
       } catch (const StoreError& e) {
         message = e.what();
       }
     }
-    if (kept == 0 || !contains(message, "No space left on device") ||
-        !contains(message, "free some space"))
-      return 1;
   }
-  if (load_results(out).cases().size() != kept) return 2;
-  if (mount("", out.c_str(), nullptr, MS_REMOUNT, "size=4m") != 0) return 3;
+  if (message.empty() || kept < 2) return 1;
+  for (const auto& word : disk.words)
+    if (!contains(message, word)) return 2;
+  if (load_results(out).cases().size() != kept) return 3;
+  disk.make_room();
   Store store(out);
-  const auto info = sample_case("jpo", 4, kept);
-  store.append(info, sample_data(info), sample_stage(info, 0, 0, 3000));
+  append(store);
   store.finish();
   return store.cases().size() == kept + 1 ? 0 : 4;
 }
 
-TEST(Crash, FullDiskIsSaidAndCostsNothing) {
-  TemporaryDirectory out;
+template <class F>
+int exit_code_of_child(F&& body) {
   const pid_t child = fork();
   if (child == 0) {
     int code = 99;
     try {
-      code = fill_small_disk(out.path());
+      code = body();
     } catch (const std::exception& e) {
       fmt::print(stderr, "{}\n", e.what());
     }
@@ -68,10 +77,45 @@ TEST(Crash, FullDiskIsSaidAndCostsNothing) {
   }
   int status = 0;
   waitpid(child, &status, 0);
-  ASSERT_TRUE(WIFEXITED(status));
-  if (WEXITSTATUS(status) == kSkip)
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 100;
+}
+
+TEST(Crash, FullDiskIsSaidAndCostsNothing) {
+  TemporaryDirectory out;
+  const char* path = out.path().c_str();
+  const int code = exit_code_of_child([&] {
+    if (unshare(CLONE_NEWNS) != 0 ||
+        mount("", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
+        mount("tmpfs", path, "tmpfs", 0, "size=256k") != 0)
+      return kSkip;
+    return fill_the_disk(
+        out.path(),
+        {.fill = [] {},
+         .make_room = [&] { mount("", path, nullptr, MS_REMOUNT, "size=4m"); },
+         .words = {"No space left on device", "free some space"},
+         .numbers = 3000});
+  });
+  if (code == kSkip)
     GTEST_SKIP() << "mounting a small file system is not allowed here";
-  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(code, 0);
+}
+
+TEST(Crash, FileSizeLimitIsSaidAndCostsNothing) {
+  TemporaryDirectory out;
+  const auto limit = [](rlim_t bytes) {
+    const rlimit value{.rlim_cur = bytes, .rlim_max = RLIM_INFINITY};
+    setrlimit(RLIMIT_FSIZE, &value);
+  };
+  EXPECT_EQ(exit_code_of_child([&] {
+              std::signal(SIGXFSZ, SIG_IGN);
+              return fill_the_disk(
+                  out.path(),
+                  {.fill = [&] { limit(20000); },
+                   .make_room = [&] { limit(RLIM_INFINITY); },
+                   .words = {"cannot write ", "finished stages are saved"},
+                   .numbers = 5000});
+            }),
+            0);
 }
 
 /// Stage number i of a campaign of two-stage cases.

@@ -2,11 +2,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 
-#include <csignal>
-#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "suite/results/results.h"
@@ -344,70 +340,6 @@ TEST_F(StoreTest, UnwritableDirectory) {
   fs::permissions(out_.path(), fs::perms::owner_all);
   EXPECT_TRUE(contains(message, "Permission denied")) << message;
   EXPECT_TRUE(contains(message, "--out")) << message;
-}
-
-/// In a child process: appends until the disk is full, then checks that the
-/// store says so, is whole and continues once there is room. 0 if so.
-int fill_the_disk(const fs::path& out,
-                  const std::function<void()>& make_full,
-                  const std::function<void()>& make_room) {
-  int kept = 0;
-  std::string message;
-  {
-    Store store(out);
-    for (std::uint64_t seed = 0; seed < 100 && message.empty(); ++seed) {
-      const auto info = sample_case("jpo", 4, seed);
-      if (seed == 2) make_full();
-      try {
-        store.append(info, sample_data(info), sample_stage(info, 0, 0, 5000));
-        ++kept;
-      } catch (const StoreError& e) {
-        message = e.what();
-      }
-    }
-  }
-  if (message.empty() || kept < 2) return 1;
-  if (!contains(message, "cannot write ") ||
-      !contains(message, "finished stages are saved"))
-    return 2;
-  if (static_cast<int>(load_results(out).cases().size()) != kept) return 3;
-  make_room();
-  const auto info = sample_case("jpo", 4, static_cast<std::uint64_t>(kept));
-  Store store(out);
-  store.append(info, sample_data(info), sample_stage(info, 0, 0, 5000));
-  store.finish();
-  return static_cast<int>(store.cases().size()) == kept + 1 ? 0 : 4;
-}
-
-template <class F>
-int exit_code_of_child(F&& body) {
-  const pid_t child = fork();
-  if (child == 0) {
-    int code = 99;
-    try {
-      code = body();
-    } catch (const std::exception& e) {
-      fmt::print(stderr, "{}\n", e.what());
-    }
-    _exit(code);
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 100;
-}
-
-TEST_F(StoreTest, FileSizeLimit) {
-  EXPECT_EQ(
-      exit_code_of_child([&] {
-        const auto limit = [](rlim_t bytes) {
-          const rlimit value{.rlim_cur = bytes, .rlim_max = RLIM_INFINITY};
-          setrlimit(RLIMIT_FSIZE, &value);
-        };
-        std::signal(SIGXFSZ, SIG_IGN);
-        return fill_the_disk(
-            out_.path(), [&] { limit(20000); }, [&] { limit(RLIM_INFINITY); });
-      }),
-      0);
 }
 
 }  // namespace
