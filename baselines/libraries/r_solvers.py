@@ -9,7 +9,8 @@ import numpy as np
 
 from objective import Objective, box_of, outcome
 
-PROGRAM = str(pathlib.Path(__file__).with_name("r_solvers.R"))
+# Its text, not its path: keys of stages have it.
+PROGRAM = pathlib.Path(__file__).with_name("r_solvers.R").read_text()
 METHODS = {"r-bfgs": "BFGS", "r-lbfgsb": "L-BFGS-B", "r-nlminb": "nlminb",
            "r-ucminf": "ucminf"}
 BOUNDED = ("L-BFGS-B", "nlminb")
@@ -24,10 +25,9 @@ def methods():
         return
     said = subprocess.run(["Rscript", "--vanilla", "-e", _VERSIONS],
                           capture_output=True, text=True, check=True).stdout
-    program = pathlib.Path(PROGRAM).read_text()
     for name, method in METHODS.items():
         if method != "ucminf" or "ucminf" in said:
-            yield name, method, {"library": said, "program": program}
+            yield name, method, {"library": said}
 
 
 def _words(numbers, by=" "):
@@ -64,7 +64,7 @@ def _solve_one(process, run, i, method, boxed):
 
 
 def solve(run, method, boxed=False):
-    with subprocess.Popen(["Rscript", "--vanilla", PROGRAM], text=True,
+    with subprocess.Popen(["Rscript", "--vanilla", "-e", PROGRAM], text=True,
                           stdin=subprocess.PIPE,
                           stdout=subprocess.PIPE) as process:
         return outcome([_solve_one(process, run, i, method, boxed)
