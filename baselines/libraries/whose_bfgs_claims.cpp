@@ -208,7 +208,7 @@ std::vector<Claim> whose_bfgs_claims() {
             "Kuramoto-Sivashinsky equation, and on Navier-Stokes",
             more_than_half_better(),
             "",
-            physinv::depends("on the library")),
+            physinv::not_run("the networks of Navier-Stokes take hours")),
       claim("S2",
             "With the BFGS of every library this mean is as printed, and the "
             "percentage of Navier-Stokes",
@@ -221,7 +221,7 @@ std::vector<Claim> whose_bfgs_claims() {
             least_above(f_at_the_largest, 0.5),
             "Of each library the least f at the largest n, of wave packet, "
             "billiards and the Kuramoto-Sivashinsky equation.",
-            physinv::depends("on the library")),
+            physinv::not_run("the networks of Navier-Stokes take hours")),
       claim("S4",
             "The fraction of better problems clearly increases with the data "
             "set, with the BFGS of every library",
