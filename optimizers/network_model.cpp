@@ -178,8 +178,8 @@ void NetworkModel<T>::warm_up() {
 
 template <class T>
 void NetworkModel<T>::predict(BatchIn<T> input, BatchOut<T> output) {
-  // Between updates nobody reads what a minibatch has left on its tape. A bound
-  // input stays there, and larger batches would make the tape grow.
+  // Between updates the tape of a minibatch is not read. A bound input stays
+  // there, and larger batches would make the tape grow.
   const bool bound = input_.size() > 0;
   const bool shared = !bound && input.cols() <= output_.cols();
   const Counts counts = work_.counts;

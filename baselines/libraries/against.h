@@ -13,7 +13,7 @@ namespace libraries {
 inline physinv::Select fit() { return {"jpo", "fit"}; }
 inline physinv::Select refined() { return {"jpo", "refine"}; }
 
-/// A share of a run's problems, of its losses beside those of `solver`.
+/// A share of a run's problems, of its losses against those of `solver`.
 using Share = double (*)(const physinv::Shares&);
 double better(const physinv::Shares& s);
 double equal(const physinv::Shares& s);
@@ -23,7 +23,7 @@ physinv::RunValue against(
     Share share,
     physinv::Equality equality = physinv::Equality::strict);
 
-/// Solvers by themselves that were run beside JPO, in the order of the
+/// Solvers by themselves that were run with JPO, in the order of the
 /// experiment: those of the plug-in with the settings of the suite's BFGS, then
 /// those that were run from Python.
 std::vector<std::string> solvers_of(const physinv::Evidence& evidence);

@@ -32,7 +32,7 @@ struct Disk {
 };
 
 /// Appends until the disk is full, then checks that the store says so, is whole
-/// and goes on once there is room. 0 if so.
+/// and continues once there is room. 0 if so.
 int fill_the_disk(const fs::path& out, const Disk& disk) {
   std::string message;
   std::size_t kept = 0;
