@@ -154,7 +154,7 @@ std::string answer(const Publication& paper,
                                 markdown(paper.title),
                                 markdown(paper.key),
                                 markdown(paper.question));
-  for (const ClaimKey key : paper.main_claims) {
+  for (const ClaimKey& key : paper.main_claims) {
     const auto found = claims.find(key);
     if (found == claims.end()) continue;
     const ClaimResult& claim = found->second.claim;
