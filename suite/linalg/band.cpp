@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "suite/core/blocks.h"
-#include "suite/core/progress.h"
+#include "suite/core/waitable_count.h"
 #include "suite/linalg/householder.h"
 
 namespace physinv::linalg {
@@ -176,8 +176,8 @@ void BandReduction::step(Index sweep, Index number) {
 /// behind the last of the group before. `own` is how far the last one is.
 void BandReduction::run(Index begin,
                         Index end,
-                        const Progress* before,
-                        Progress& own) {
+                        const WaitableCount* before,
+                        WaitableCount& own) {
   const Index lag = 2 * (end - 1 - begin);
   for (Index t = 0; t < chain(n_, begin) + lag; ++t) {
     if (before != nullptr)
@@ -196,11 +196,11 @@ void BandReduction::reduce(VectorOut<double> d,
   open_sweeps();
   const Index sweeps = std::max<Index>(n_ - 2, 0);
   const Index groups = (sweeps + kGroup - 1) / kGroup;
-  std::vector<Progress> progress(static_cast<std::size_t>(groups));
+  std::vector<WaitableCount> progress(static_cast<std::size_t>(groups));
   std::atomic<Index> next{0};  // groups start in order
   for_blocks(threads, count_of(threads), [&](Index, int) {
     for (Index g; (g = next.fetch_add(1)) < groups;) {
-      Progress* const own = progress.data() + g;
+      WaitableCount* const own = progress.data() + g;
       run(g * kGroup,
           std::min((g + 1) * kGroup, sweeps),
           g > 0 ? own - 1 : nullptr,

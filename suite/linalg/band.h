@@ -9,7 +9,7 @@
 #include "suite/core/buffer.h"
 
 namespace physinv {
-class Progress;
+class WaitableCount;
 class Threads;
 }  // namespace physinv
 
@@ -43,7 +43,10 @@ class BandReduction {
   void open_sweeps();
   void start(Index sweep);
   void step(Index sweep, Index number);
-  void run(Index begin, Index end, const Progress* before, Progress& own);
+  void run(Index begin,
+           Index end,
+           const WaitableCount* before,
+           WaitableCount& own);
   /// Place of a sweep's first reflector.
   Index first(Index sweep) const {
     return first_[static_cast<std::size_t>(sweep)];

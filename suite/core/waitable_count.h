@@ -1,4 +1,4 @@
-/// How far work has come that other work, in another thread, follows closely.
+/// A count of finished parts that another thread can wait for.
 /// It must have started before anyone waits for it.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace physinv {
 
-class alignas(64) Progress {
+class alignas(64) WaitableCount {
  public:
   void reach(Index count) { count_.store(count, std::memory_order_release); }
   void wait_for(Index count) const {
