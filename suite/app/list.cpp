@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <re2/re2.h>
 
 #include <map>
 #include <nlohmann/json.hpp>
@@ -98,9 +97,15 @@ std::string escaped(const std::string& text) {
 }
 
 /// A cause names its numbers in braces; here nothing was measured.
-std::string without_numbers(std::string cause) {
-  RE2::GlobalReplace(&cause, R"(\{[^}]*\})", "...");
-  return cause;
+std::string without_numbers(const std::string& cause) {
+  std::string out;
+  bool inside = false;
+  for (const char c : cause) {
+    if (c == '{') out += "...";
+    inside = (inside || c == '{') && c != '}';
+    if (!inside && c != '}') out += c;
+  }
+  return out;
 }
 
 std::string chain_text(const Method& method) {
