@@ -18,6 +18,7 @@
 #include "suite/store/file.h"
 #include "suite/store/stage_state.h"
 #include "tests/suite/harness/fake_experiment.h"
+#include "tests/suite/store/store_testing.h"
 #include "tests/support/bits.h"
 #include "tests/support/float_control.h"
 
@@ -98,15 +99,12 @@ class RunCase : public ::testing::Test {
 /// Stages that are left before their end, with a folder for their states.
 class LeftCase : public RunCase {
  protected:
-  LeftCase() { std::filesystem::remove_all(store_); }
-  ~LeftCase() override { std::filesystem::remove_all(store_); }
-
   void leave(Leaving (*when)()) {
     left_.checkpoints = {.store = store_, .seconds = 1e9, .leaving = when};
   }
 
-  const std::filesystem::path store_ =
-      std::filesystem::path(testing::TempDir()) / "physinv_left_case";
+  const TemporaryDirectory folder_;
+  const std::filesystem::path store_ = folder_ / "states";
   RunOptions left_ = options();
   std::vector<StageRecord> records_;
 };
