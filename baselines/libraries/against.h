@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "suite/evidence/quantity.h"
-#include "suite/evidence/shares.h"
+#include "suite/evidence/run_values.h"
 
 namespace libraries {
 
@@ -13,15 +12,10 @@ namespace libraries {
 inline physinv::Select fit() { return {"jpo", "fit"}; }
 inline physinv::Select refined() { return {"jpo", "refine"}; }
 
-/// A share of a run's problems, of its losses against those of `solver`.
-using Share = double (*)(const physinv::Shares&);
+/// Shares of a run's problems.
 double better(const physinv::Shares& s);
 double equal(const physinv::Shares& s);
 double f(const physinv::Shares& s);
-physinv::RunValue against(
-    const std::string& solver,
-    Share share,
-    physinv::Equality equality = physinv::Equality::strict);
 
 /// Solvers by themselves that were run with JPO, in the order of the
 /// experiment: those of the plug-in with the settings of the suite's BFGS, then

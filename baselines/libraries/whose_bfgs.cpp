@@ -15,6 +15,7 @@
 namespace libraries {
 namespace {
 
+using physinv::against;
 using physinv::Cell;
 using physinv::Equality;
 using physinv::Evidence;
@@ -29,7 +30,7 @@ constexpr Equality kSameEnd{.relative = 1e-3, .both_below = 1e-6};
 struct Column {
   const char* head;
   physinv::Select (*of)();
-  Share share;
+  physinv::Share share;
   Equality equality = Equality::strict;
   const char* printed = "";
 };
@@ -70,7 +71,7 @@ physinv::Table table(const std::string& varied, const Evidence& e) {
     physinv::TableRow row{.label = solver};
     for (const Column& c : columns()) {
       const Quantity q =
-          percent(mean(c.of(), against(solver, c.share, c.equality)));
+          percent(mean(c.of(), against({solver}, c.share, c.equality)));
       Cell cell = physinv::cell_of(q(e));
       if (solver == "bfgs" && *c.printed != '\0')
         cell = beside_printed(
@@ -84,8 +85,7 @@ physinv::Table table(const std::string& varied, const Evidence& e) {
 
 Series over_n(const std::string& solver, const Evidence& e) {
   std::map<Index, std::vector<double>> values;
-  for (const auto& s :
-       sample(e, refined(), against(solver, f, Equality::strict)))
+  for (const auto& s : sample(e, refined(), against({solver}, f)))
     values[s.n].push_back(s.value);
   Series series{.label = solver, .method = solver, .markers = true};
   for (const auto& [n, of_seeds] : values) {
@@ -128,7 +128,7 @@ Series by_solver(const char* label,
       .label = label, .method = label, .line = false, .markers = true};
   for (std::size_t i = 0; i < solvers.size(); ++i) {
     const Measured m =
-        percent(mean(refined(), against(solvers[i], f, equality)))(e);
+        percent(mean(refined(), against({solvers[i]}, f, equality)))(e);
     const double spread = m.spread.value_or(0);
     series.x.push_back(static_cast<double>(i));
     series.y.push_back(*m.value);

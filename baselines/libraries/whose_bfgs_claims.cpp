@@ -10,6 +10,7 @@
 namespace libraries {
 
 using physinv::above;
+using physinv::against;
 using physinv::as_printed;
 using physinv::as_stated;
 using physinv::Claim;
@@ -60,8 +61,9 @@ Sizes sizes_of(const std::string& problem) {
 }
 
 Quantity percent_better(const std::string& problem, const Bfgs& bfgs) {
-  return of_experiment(study_of(problem),
-                       percent(mean(refined(), against(bfgs.method, better))));
+  return of_experiment(
+      study_of(problem),
+      percent(mean(refined(), against({bfgs.method}, better))));
 }
 
 /// Those whose sets are cheap: networks for Navier-Stokes take hours.
@@ -85,7 +87,7 @@ using Number = Quantity (*)(const physinv::Select& jpo,
 Quantity f_of_all(const physinv::Select& jpo,
                   const std::string& problem,
                   const Bfgs& bfgs) {
-  return of_experiment(study_of(problem), mean(jpo, against(bfgs.method, f)));
+  return of_experiment(study_of(problem), mean(jpo, against({bfgs.method}, f)));
 }
 
 Quantity f_at_the_largest(const physinv::Select& jpo,
@@ -93,7 +95,7 @@ Quantity f_at_the_largest(const physinv::Select& jpo,
                           const Bfgs& bfgs) {
   const Index n = sizes_of(problem).largest;
   return of_experiment(study_of(problem),
-                       mean(jpo.of_sizes(n, n), against(bfgs.method, f)));
+                       mean(jpo.of_sizes(n, n), against({bfgs.method}, f)));
 }
 
 Quantity growth_of_f(const physinv::Select& jpo,
@@ -103,7 +105,7 @@ Quantity growth_of_f(const physinv::Select& jpo,
   return of_experiment(study_of(problem),
                        growth_in_errors(jpo.of_sizes(largest, largest),
                                         jpo.of_sizes(smallest, smallest),
-                                        against(bfgs.method, f)));
+                                        against({bfgs.method}, f)));
 }
 
 Quantity least_of(Number number,

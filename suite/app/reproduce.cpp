@@ -94,10 +94,11 @@ void count_keys(const CaseRecord& stored,
 
 /// Leaves out cases that no profile has any more, and counts keys of the
 /// others.
-void match_with_registered(const Results& results, Again& again) {
+void match_with_registered(const Results& results,
+                           const Numerics& numerics,
+                           Again& again) {
   std::map<std::string_view, const CaseRecord*> stored;
   for (const CaseRecord& c : results.cases()) stored[c.info.name] = &c;
-  const Numerics numerics = remembered_numerics();
   for (auto& [profile, names] : again.cases) {
     const CasesByName registered = registered_cases(again, profile);
     again.unknown += std::erase_if(names, [&](const std::string& name) {
@@ -112,7 +113,8 @@ void match_with_registered(const Results& results, Again& again) {
 /// What results.json.gz of the campaign says was run, of one paper or of all.
 Again again_of(const NamedDigest& campaign,
                const fs::path& folder,
-               const std::string& paper) {
+               const std::string& paper,
+               const Numerics& numerics) {
   const auto& provenance = campaign.digest.at("provenance");
   Again again{.name = campaign.name, .cases = {}, .sets = {}, .seeds = {}};
   if (const auto options = provenance.find("options");
@@ -138,7 +140,7 @@ Again again_of(const NamedDigest& campaign,
       if (has_time(s)) again.cpu_seconds += s.clocks.solve.cpu;
   }
   again.seeds = fmt::format("{}", fmt::join(seeds, ","));
-  match_with_registered(results, again);
+  match_with_registered(results, numerics, again);
   return again;
 }
 
@@ -156,10 +158,11 @@ std::vector<Again> to_run_again(const std::vector<NamedDigest>& campaigns,
         if (found.claim.verdict != Verdict::not_judged &&
             is_registered(claim.first))
           decides[found.campaign].push_back(claim);
+  const Numerics numerics = remembered_numerics();
   std::vector<Again> all;
   for (const NamedDigest& c : campaigns) {
     if (!paper.empty() && !decides.contains(c.name)) continue;
-    Again again = again_of(c, folder / c.name, paper);
+    Again again = again_of(c, folder / c.name, paper, numerics);
     again.decides = decides[c.name];
     all.push_back(std::move(again));
   }

@@ -41,4 +41,12 @@ RunValue of_row(RunRow row, double (*statistic)(std::vector<double>)) {
   };
 }
 
+RunValue against(const Select& other, Share share, Equality equality) {
+  return [=](const Run& run) -> std::optional<double> {
+    const auto found = run.beside(other.in(run.record->info.experiment));
+    if (!found) return {};
+    return share(compare_losses(run.stage->loss, found->stage->loss, equality));
+  };
+}
+
 }  // namespace physinv

@@ -9,6 +9,7 @@
 
 #include "suite/core/arrays.h"
 #include "suite/evidence/quantity.h"
+#include "suite/evidence/shares.h"
 
 namespace physinv {
 
@@ -23,5 +24,12 @@ RunRow evaluations();
 
 /// A statistic of a row (suite/evidence/statistics.h); empty without examples.
 RunValue of_row(RunRow row, double (*statistic)(std::vector<double>));
+
+/// A share of the run's problems, of its losses compared with those of `other`
+/// in the same experiment, of the same n and seed; empty without that run.
+using Share = double (*)(const Shares&);
+RunValue against(const Select& other,
+                 Share share,
+                 Equality equality = Equality::strict);
 
 }  // namespace physinv

@@ -28,15 +28,6 @@ std::vector<double> list(const V& row) {
   return {row.begin(), row.end()};
 }
 
-RunValue against_bfgs(double (*share)(const Shares&),
-                      Equality equality = Equality::strict) {
-  return [=](const Run& run) -> Value {
-    const auto other = bfgs_beside(run);
-    if (!other) return {};
-    return share(compare_losses(run.stage->loss, other->stage->loss, equality));
-  };
-}
-
 /// The stage before this one.
 std::optional<Run> before(const Run& run) {
   const auto& stages = run.record->stages;
@@ -125,16 +116,19 @@ std::optional<Run> bfgs_beside(const Run& run) {
 }
 
 RunValue better(Equality equality) {
-  return against_bfgs([](const Shares& s) { return s.better; }, equality);
+  return against(
+      bfgs(), [](const Shares& s) { return s.better; }, equality);
 }
 RunValue equal(Equality equality) {
-  return against_bfgs([](const Shares& s) { return s.equal; }, equality);
+  return against(
+      bfgs(), [](const Shares& s) { return s.equal; }, equality);
 }
 RunValue worse() {
-  return against_bfgs([](const Shares& s) { return s.worse; });
+  return against(bfgs(), [](const Shares& s) { return s.worse; });
 }
 RunValue f(Equality equality) {
-  return against_bfgs([](const Shares& s) { return s.f(); }, equality);
+  return against(
+      bfgs(), [](const Shares& s) { return s.f(); }, equality);
 }
 
 RunValue solved(const Solved& solved) {
